@@ -2,7 +2,8 @@
 
 use super::keep::{CachedRender, RenderRecord};
 use super::light::ByLight;
-use super::lines::{Lines, Stored};
+use super::lines::Stored;
+use super::pictures::Lines;
 use super::settings::Settings;
 use super::studio::Studio;
 use crate::harness::{duration, say};

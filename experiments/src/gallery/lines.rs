@@ -2,7 +2,7 @@
 //! photons, with radii that shrink, until as much time has passed as the picture of 1998 took.
 
 use super::keep::{CachedRender, FORMAT, RenderRecord};
-use super::pictures::Picture;
+use super::pictures::{Lines, Picture};
 use super::recipe;
 use super::studio::Studio;
 use cpu_time::ProcessTime;
@@ -12,17 +12,6 @@ use turbid::math::Positive;
 use turbid::photons::maps::{self, Amount, MapSettings};
 use turbid::sensor::{Film, Method};
 use turbid::transport::{NoProgress, Progress};
-
-/// What a map of them takes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lines {
-    /// The picture's photons on surfaces over those of each map.
-    pub parts: u64,
-    /// Points in the medium, and the radius about rays in the first map \[L\].
-    pub points: (Amount, f64),
-    /// Beams in the medium, and that radius.
-    pub beams: (Amount, f64),
-}
 
 /// What is stored of light in a medium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,6 @@
 //! The pictures: scenes, numbers of photons, and what the originals cost.
 
 use super::light::ByLight;
-use super::lines::Lines;
 use turbid::integrators::Layer;
 use turbid::photons::maps::Amount;
 
@@ -12,6 +11,17 @@ pub enum Beside {
     Maps,
     /// Light that was scattered once, alone.
     Single,
+}
+
+/// What each of the maps takes that are read along whole rays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lines {
+    /// The picture's photons on surfaces over those of each map.
+    pub parts: u64,
+    /// Points in the medium, and the radius about rays in the first map \[L\].
+    pub points: (Amount, f64),
+    /// Beams in the medium, and that radius.
+    pub beams: (Amount, f64),
 }
 
 /// One picture of the gallery.
