@@ -402,8 +402,9 @@ struct Block<'a> {
     bins: Tallies<'a>,
     /// Random numbers of scores: what is scored does not change the walk.
     scoring: Stream,
-    /// Random numbers of what beams carry, and of second legs of planes, which do not change the walk either.
+    /// Random numbers of what beams carry, which do not change the walk either.
     tracking: Stream,
+    /// Those of second legs of planes, likewise.
     turning: Stream,
     pass: Pass,
 }

@@ -66,11 +66,11 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
         .enumerate()
         .map(|(n, method)| Ok((method, large.rival(&format!("equal-{n}"), method, ours.facts.seconds)?)))
         .collect::<anyhow::Result<Vec<(ByLight, CachedRender)>>>()?;
-    let stored: &[Stored] = if picture.lines.is_some() { &Stored::ALL } else { &[] };
-    let lines = stored
+    let lines = picture
+        .lines
         .iter()
-        .zip(picture.lines.iter().cycle())
-        .map(|(stored, lines)| Ok((*stored, large.lines((lines, *stored), &ours.facts)?)))
+        .flat_map(|lines| Stored::ALL.map(|stored| (lines, stored)))
+        .map(|of| Ok((of.1, large.lines(of, &ours.facts)?)))
         .collect::<anyhow::Result<Vec<(Stored, CachedRender)>>>()?;
     // Before anything that is compared is made.
     let (prediction, mut seconds) = predict(small, ours)?;

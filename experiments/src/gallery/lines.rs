@@ -4,7 +4,7 @@
 use super::keep::{CachedRender, FORMAT, RenderRecord};
 use super::pictures::{Lines, Picture};
 use super::recipe;
-use super::studio::Studio;
+use super::studio::{Studio, stored};
 use cpu_time::ProcessTime;
 use turbid::estimators::Gather;
 use turbid::integrators::mapper::{self, Mapper};
@@ -58,7 +58,7 @@ impl Stored {
     }
 }
 
-/// What is stored in the map of this number, and how the first is read.
+/// What is stored in the map of this number, and how it is read.
 fn settings(
     picture: &Picture,
     (lines, stored): (&Lines, Stored),
@@ -133,11 +133,7 @@ impl Studio<'_> {
             method.extend(&mut one, &self.camera, 1, self.streams(maps.replicate), progress)?;
             film.push_film(&one);
             facts.samples += 1;
-            let in_medium = filled.volume.as_ref().map_or(0, |map| map.stored() as u64)
-                + filled.beams.as_ref().map_or(0, |map| map.stored() as u64);
-            let on_surfaces = [&filled.global, &filled.caustic]
-                .map(|map| map.as_ref().map_or(0, |map| map.stored() as u64));
-            facts.stored = [on_surfaces[0], on_surfaces[1], in_medium];
+            facts.stored = stored(&filled);
             facts.emitted = [filled.report.main.emitted, filled.report.caustic.emitted];
             facts.seconds = start.elapsed().as_secs_f64();
             // As much again as the mean map took.

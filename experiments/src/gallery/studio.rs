@@ -10,7 +10,6 @@ use anyhow::{Context, anyhow};
 use cpu_time::ProcessTime;
 use std::path::Path;
 use turbid::integrators::mapper;
-use turbid::photons::PhotonMap;
 use turbid::photons::maps::{self, Maps};
 use turbid::scene::{Camera, Scene, SceneFile};
 use turbid::sensor::{Film, Method, Streams};
@@ -30,6 +29,13 @@ pub struct Studio<'a> {
     pub program: String,
     /// Digest of the scene's text.
     text: String,
+}
+
+/// What the global and the caustic map hold, and what is kept of the light in media, as photons or as beams.
+pub(super) fn stored(maps: &Maps) -> [u64; 3] {
+    let [global, caustic, volume] = [&maps.global, &maps.caustic, &maps.volume]
+        .map(|map| map.as_ref().map_or(0, |map| map.stored() as u64));
+    [global, caustic, volume + maps.beams.as_ref().map_or(0, |map| map.stored() as u64)]
 }
 
 impl<'a> Studio<'a> {
@@ -125,7 +131,6 @@ impl<'a> Studio<'a> {
         let report = method.extend(&mut film, &self.camera, samples, self.streams(replicate), progress)?;
         let gathers = [report.global, report.caustic, report.volume];
         let asked = settings.nearest();
-        let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
         let facts = RenderRecord {
             format: FORMAT,
             words: self.photon_words(samples, replicate, factor),
@@ -134,7 +139,7 @@ impl<'a> Studio<'a> {
             map_seconds,
             samples,
             emitted: [maps.report.main.emitted, maps.report.caustic.emitted],
-            stored: [stored(&maps.global), stored(&maps.caustic), stored(&maps.volume)],
+            stored: stored(&maps),
             radii: gathers.map(|g| g.mean_radius()),
             estimates: Some([0, 1, 2].map(|map| MapEstimates::new(asked[map], &gathers[map]))),
         };

@@ -102,8 +102,8 @@ pub struct Measure {
     #[arg(long, value_name = "K", requires = "ray_radius", conflicts_with_all = ["progressive", "reject", "beam_radius", "planes"], value_parser = whole::<u32>(1..=1_000_000_000))]
     ray_k: Option<u32>,
     /// Store photons' flights through media as beams, and read rays from all beams that pass within this distance of the ray: less
-    /// noise than points where it is below 0.4 mean free paths. Sensors of fluence take photons in the balls of --k or --radius.
-    /// [L].
+    /// noise than points where it is below 0.4 mean free paths. Sensors of fluence take photons in the balls of --k or
+    /// --radius [L].
     #[arg(long, conflicts_with_all = ["reject", "ray_radius", "photons_from"])]
     beam_radius: Option<f64>,
     /// Read sensors of fluence from beams too: from all that pass the place within --beam-radius, in place of from photons in a ball

@@ -266,7 +266,7 @@ pub struct Readout {
     ray_k: Option<u32>,
     /// Store photons' flights through media as beams in place of photons, and read them along whole rays, from all beams that pass
     /// within this distance of the ray, weighted by --kernel: less noise than points where it is below 0.4 mean free paths. --volume
-    /// counts beams. [L].
+    /// counts beams [L].
     #[arg(long, conflicts_with_all = ["reject", "ray_radius"])]
     beam_radius: Option<f64>,
     /// In how many dimensions beams are blurred, 1d or 2d [default: 1d].

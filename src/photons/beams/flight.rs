@@ -82,7 +82,8 @@ impl<S: FnMut(Beam)> Stretches<'_, S> {
     fn add(&mut self, (number, kind): (usize, BeamKind), span: Interval, power: Spectrum) {
         let FlightBeams { scene, walker, period, .. } = *self.flight;
         let medium = scene.medium(number);
-        if !self.is_short || !is_scattering(medium) || power.sum() == 0.0 {
+        let counts = is_scattering(medium) && power.sum() > 0.0;
+        if !self.is_short || !counts {
             return;
         }
         let span = seen(medium, span);
