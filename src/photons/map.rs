@@ -1,7 +1,7 @@
 //! A photon map: the photons that one pass stored, and how many that pass emitted.
 
 use super::tree::Radii;
-use super::{Photon, PhotonTree, periodic};
+use super::{Photon, PhotonTree, Photons, periodic};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
 use crate::transport::{NoProgress, Progress};
@@ -38,7 +38,7 @@ impl PhotonMap {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] if `emitted` is zero, and those of [`PhotonTree::new`].
-    pub fn new(photons: Vec<Photon>, emitted: u64) -> Result<Self> {
+    pub fn new(photons: impl Into<Photons>, emitted: u64) -> Result<Self> {
         Self::of(PhotonTree::new(photons), emitted)
     }
 
@@ -46,7 +46,7 @@ impl PhotonMap {
     ///
     /// # Errors
     /// As [`PhotonMap::new`].
-    pub fn new_parallel(photons: Vec<Photon>, emitted: u64) -> Result<Self> {
+    pub fn new_parallel(photons: impl Into<Photons>, emitted: u64) -> Result<Self> {
         Self::new_watched(photons, emitted, &NoProgress)
     }
 
@@ -54,7 +54,7 @@ impl PhotonMap {
     ///
     /// # Errors
     /// As [`PhotonMap::new`].
-    pub fn new_watched(photons: Vec<Photon>, emitted: u64, progress: &dyn Progress) -> Result<Self> {
+    pub fn new_watched(photons: impl Into<Photons>, emitted: u64, progress: &dyn Progress) -> Result<Self> {
         Self::of(PhotonTree::new_watched(photons, progress), emitted)
     }
 
@@ -62,7 +62,7 @@ impl PhotonMap {
     ///
     /// # Errors
     /// As [`PhotonMap::new`].
-    pub fn of_parts(parts: Vec<Vec<Photon>>, emitted: u64, progress: &dyn Progress) -> Result<Self> {
+    pub fn of_parts(parts: Vec<Photons>, emitted: u64, progress: &dyn Progress) -> Result<Self> {
         Self::of(PhotonTree::of_parts(parts, progress), emitted)
     }
 
@@ -72,7 +72,7 @@ impl PhotonMap {
     /// # Errors
     /// As [`PhotonMap::new`]; [`Error::OutOfRange`] for a reach beyond the shorter side.
     pub fn periodic(
-        mut parts: Vec<Vec<Photon>>,
+        mut parts: Vec<Photons>,
         emitted: u64,
         cell: Option<(DVec2, f64)>,
         progress: &dyn Progress,

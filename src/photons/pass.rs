@@ -4,7 +4,7 @@ use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS};
 use super::importance::{Branching, Importance};
 use super::planes::{Plane, PlaneMap, check_planes, second_leg};
 use super::tallies::{Scores, Tallies};
-use super::{Emitter, Photon, PhotonMap, check_end, periodic};
+use super::{Emitter, Photon, PhotonMap, Photons, check_end, periodic};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
@@ -166,13 +166,13 @@ impl AddAssign for PassReport {
     }
 }
 
-/// What a pass brought: photons in the order of their histories, a vector a block.
+/// What a pass brought: photons in the order of their histories, in parts.
 #[derive(Debug, Clone, Default)]
 pub struct Pass {
     /// Photons that met surfaces.
-    pub surfaces: Vec<Vec<Photon>>,
+    pub surfaces: Vec<Photons>,
     /// Photons that collided in media.
-    pub media: Vec<Vec<Photon>>,
+    pub media: Vec<Photons>,
     /// Flights through media, where they are stored.
     pub beams: Vec<Vec<Beam>>,
     /// Beams that are to be stored; those of a pilot are counted only.
@@ -204,8 +204,8 @@ impl Pass {
     }
 
     /// Photons that collided in media.
-    pub fn photons(&self) -> impl Iterator<Item = &Photon> {
-        self.media.iter().flatten()
+    pub fn photons(&self) -> impl Iterator<Item = Photon> {
+        self.media.iter().flat_map(Photons::iter)
     }
 
     /// The map of the photons that collided in media, for balls that reach so far beyond the periodic cell \[L\], if there is one.
@@ -238,8 +238,8 @@ impl Pass {
     }
 
     fn merged(mut self, other: Pass) -> Pass {
-        self.surfaces.extend(other.surfaces);
-        self.media.extend(other.media);
+        Photons::join(&mut self.surfaces, other.surfaces);
+        Photons::join(&mut self.media, other.media);
         self.beams.extend(other.beams);
         self.met_beams += other.met_beams;
         self.planes.extend(other.planes);
@@ -335,8 +335,8 @@ impl<'a> Run<'a> {
                 power,
                 history: 0,
                 scores: vec![Spectrum::ZERO; self.sensors.len()],
-                surface: Vec::new(),
-                medium: Vec::new(),
+                surface: Photons::default(),
+                medium: Photons::default(),
                 beams: Vec::new(),
                 planes: Vec::new(),
                 has_beams: store.has_beams(),
@@ -391,8 +391,8 @@ struct Block<'a> {
     history: u64,
     /// What the present history brought each sensor \[W\].
     scores: Vec<Spectrum>,
-    surface: Vec<Photon>,
-    medium: Vec<Photon>,
+    surface: Photons,
+    medium: Photons,
     beams: Vec<Beam>,
     planes: Vec<Plane>,
     has_beams: bool,

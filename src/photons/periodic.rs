@@ -4,7 +4,7 @@
 //! directions are untouched. Where the slab is the same everywhere, or the same again after X and Y, this is exactly the
 //! slab under uniform irradiance.
 
-use super::Photon;
+use super::Photons;
 use crate::math::{Interval, Ray};
 use glam::{DVec2, DVec3};
 
@@ -44,11 +44,11 @@ pub fn in_cells(ray: &Ray, span: Interval, side: DVec2) -> impl Iterator<Item = 
 
 /// Appends copies of the photons within `margin` of the cell's edges on the other side, so that a ball of radius
 /// `margin` about any point of the cell meets what it would meet in the unbounded slab; `margin` is at most the shorter side.
-pub fn surround(photons: &mut Vec<Photon>, side: DVec2, margin: f64) {
+pub fn surround(photons: &mut Photons, side: DVec2, margin: f64) {
     for axis in 0..2 {
         let side = side[axis];
         for index in 0..photons.len() {
-            let photon = photons[index];
+            let photon = photons.get(index);
             let x = photon.position[axis];
             for (is_near, shift) in [(x <= margin, side), (x >= side - margin, -side)] {
                 if is_near {

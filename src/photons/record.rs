@@ -21,3 +21,136 @@ pub struct Photon {
     /// What the path met.
     pub flags: Flags,
 }
+
+/// Photons in columns, so that those of media hold no normals, and each column can be given back to the system when it is no longer
+/// needed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Photons {
+    pub(super) positions: Vec<DVec3>,
+    pub(super) dirs: Vec<Vec3>,
+    /// None while no photon has one.
+    pub(super) normals: Vec<Vec3>,
+    pub(super) powers: Vec<Vec3>,
+    pub(super) histories: Vec<(u16, Flags)>,
+}
+
+/// Parts of fewer photons than these are joined: columns of more are so large that the system's allocator asks for each alone and
+/// gives it back at once (glibc: from 32 MB at the latest).
+const PART: usize = 3 << 20;
+
+impl Photons {
+    /// Photons of media, with room for so many.
+    pub fn with_capacity(count: usize) -> Self {
+        Photons {
+            positions: Vec::with_capacity(count),
+            dirs: Vec::with_capacity(count),
+            normals: Vec::new(),
+            powers: Vec::with_capacity(count),
+            histories: Vec::with_capacity(count),
+        }
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// The photon of a number below [`Photons::len`].
+    #[inline]
+    pub fn get(&self, index: usize) -> Photon {
+        let (order, flags) = self.histories[index];
+        Photon {
+            position: self.positions[index],
+            dir: self.dirs[index],
+            normal: self.normals.get(index).copied().unwrap_or(Vec3::ZERO),
+            power: self.powers[index],
+            order,
+            flags,
+        }
+    }
+
+    /// Every photon.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Photon> + '_ {
+        (0..self.len()).map(|index| self.get(index))
+    }
+
+    /// Adds a photon.
+    #[inline]
+    pub fn push(&mut self, photon: Photon) {
+        if photon.normal != Vec3::ZERO || !self.normals.is_empty() {
+            self.normals.resize(self.len(), Vec3::ZERO);
+            self.normals.push(photon.normal);
+        }
+        self.positions.push(photon.position);
+        self.dirs.push(photon.dir);
+        self.powers.push(photon.power);
+        self.histories.push((photon.order, photon.flags));
+    }
+
+    /// Keeps the photons that `keeps` accepts, and no room for more.
+    pub fn retain(&mut self, keeps: impl Fn(&Photon) -> bool) {
+        fn filter<T>(column: &mut Vec<T>, kept: &[bool]) {
+            let mut kept = kept.iter();
+            column.retain(|_| kept.next() == Some(&true));
+        }
+        let kept: Vec<bool> = self.iter().map(|photon| keeps(&photon)).collect();
+        filter(&mut self.positions, &kept);
+        filter(&mut self.dirs, &kept);
+        filter(&mut self.normals, &kept);
+        filter(&mut self.powers, &kept);
+        filter(&mut self.histories, &kept);
+        self.shrink_to_fit();
+    }
+
+    /// The same photons in as little memory.
+    pub(super) fn shrink_to_fit(&mut self) {
+        self.positions.shrink_to_fit();
+        self.dirs.shrink_to_fit();
+        self.normals.shrink_to_fit();
+        self.powers.shrink_to_fit();
+        self.histories.shrink_to_fit();
+    }
+
+    /// Adds others behind its own, column by column.
+    fn append(&mut self, mut others: Photons) {
+        if !(self.normals.is_empty() && others.normals.is_empty()) {
+            self.normals.resize(self.len(), Vec3::ZERO);
+            others.normals.resize(others.len(), Vec3::ZERO);
+        }
+        self.positions.append(&mut others.positions);
+        self.dirs.append(&mut others.dirs);
+        self.normals.append(&mut others.normals);
+        self.powers.append(&mut others.powers);
+        self.histories.append(&mut others.histories);
+    }
+
+    /// Adds parts behind parts, small ones to the last.
+    pub(super) fn join(parts: &mut Vec<Photons>, others: Vec<Photons>) {
+        for part in others {
+            match parts.last_mut() {
+                Some(last) if last.len() < PART => last.append(part),
+                _ => parts.push(part),
+            }
+        }
+    }
+}
+
+impl FromIterator<Photon> for Photons {
+    fn from_iter<I: IntoIterator<Item = Photon>>(photons: I) -> Self {
+        let photons = photons.into_iter();
+        let mut columns = Photons::with_capacity(photons.size_hint().0);
+        photons.for_each(|photon| columns.push(photon));
+        columns
+    }
+}
+
+impl From<Vec<Photon>> for Photons {
+    fn from(photons: Vec<Photon>) -> Self {
+        photons.into_iter().collect()
+    }
+}

@@ -1,6 +1,6 @@
 //! Maps of independent points of a known density: estimators tested apart from transport.
 
-use super::{Flags, Photon, PhotonMap};
+use super::{Flags, Photon, PhotonMap, Photons};
 use crate::error::{Error, Result};
 use crate::math::{exp, exp_m1, ln_1p, sin_cos, warp};
 use crate::rng::{Purpose, Stream};
@@ -132,7 +132,7 @@ impl Synthetic {
             Number::Exact(n) => (n, n),
             Number::Expected(mean) => (mean, poisson(mean, seed, replicate)),
         };
-        let photons = (0..histories)
+        let photons: Photons = (0..histories)
             .filter_map(|history| self.photon(Stream::new(seed, Purpose::Synthetic, replicate, history)))
             .collect();
         PhotonMap::new(photons, emitted)

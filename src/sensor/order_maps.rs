@@ -5,7 +5,7 @@ use crate::estimators::{BeamLength, Estimator};
 use crate::photons::beams::{Beam, BeamMap};
 use crate::photons::planes::{Plane, PlaneMap};
 use crate::photons::tree::Radii;
-use crate::photons::{Emitter, Flags, Histories, Part, Pass, Photon, PhotonMap, Run, Storage};
+use crate::photons::{Emitter, Flags, Histories, Part, Pass, Photon, PhotonMap, Photons, Run, Storage};
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::transport::{NoProgress, Progress};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -265,7 +265,7 @@ pub(super) fn maps(
 
 /// What a pass stored.
 pub(super) struct Stored {
-    pub photons: Vec<Vec<Photon>>,
+    pub photons: Vec<Photons>,
     pub beams: Vec<Vec<Beam>>,
     pub planes: Vec<Vec<Plane>>,
     pub emitted: u64,
@@ -284,38 +284,50 @@ pub(super) fn maps_of(
     let ranges = wanted.ranges(sensors);
     let mut maps = OrderMaps { points: Vec::new(), beams: Vec::new(), planes: Vec::new() };
     let cell = scene.periodic_cell().map(|periodic_cell| periodic_cell.side);
-    for (range, parts) in by_ranges(ranges.points, photons, |photon: &Photon| photon.order) {
+    let holds = |range: Orders, order: u16| range.contains(u32::from(order));
+    for (range, parts) in
+        by_ranges(ranges.points, photons, |part, range| part.retain(|photon| holds(range, photon.order)))
+    {
         let map = PhotonMap::periodic(parts, emitted, cell.map(|side| (side, margin)), &NoProgress)?;
         maps.points.push((range, map.of_run(seed, replicate)));
     }
-    for (range, parts) in by_ranges(ranges.beams, beams, |beam: &Beam| beam.order) {
+    for (range, parts) in
+        by_ranges(ranges.beams, beams, |part, range| retain(part, |beam| holds(range, beam.order)))
+    {
         maps.beams.push((range, BeamMap::new(parts, emitted, cell)?));
     }
-    for (range, parts) in by_ranges(ranges.planes, planes, |plane: &Plane| plane.leg.order) {
+    for (range, parts) in
+        by_ranges(ranges.planes, planes, |part, range| retain(part, |plane| holds(range, plane.leg.order)))
+    {
         maps.planes.push((range, PlaneMap::new(parts, emitted, cell)?));
     }
     Ok(maps)
 }
 
 /// What is stored by ranges of orders; the last range takes what there is, and copies nothing.
-fn by_ranges<T: Copy>(
+fn by_ranges<P: Clone>(
     ranges: Vec<Orders>,
-    mut blocks: Vec<Vec<T>>,
-    order: impl Fn(&T) -> u16 + Copy,
-) -> impl Iterator<Item = (Orders, Vec<Vec<T>>)> {
+    mut parts: Vec<P>,
+    retain: impl Fn(&mut P, Orders),
+) -> impl Iterator<Item = (Orders, Vec<P>)> {
     let last = ranges.len().saturating_sub(1);
     ranges.into_iter().enumerate().map(move |(number, range)| {
-        let holds = |stored: &T| range.contains(u32::from(order(stored)));
-        let parts = match number == last {
-            true => {
-                let mut last = std::mem::take(&mut blocks);
-                last.iter_mut().for_each(|block| block.retain(holds));
-                last
-            }
-            false => blocks.iter().map(|block| block.iter().copied().filter(holds).collect()).collect(),
+        let of_range = |mut part: P| {
+            retain(&mut part, range);
+            part
         };
-        (range, parts)
+        let held = match number == last {
+            true => std::mem::take(&mut parts).into_iter().map(of_range).collect(),
+            false => parts.iter().cloned().map(of_range).collect(),
+        };
+        (range, held)
     })
+}
+
+/// Keeps what `keeps` accepts, and no room for more.
+fn retain<T>(part: &mut Vec<T>, keeps: impl Fn(&T) -> bool) {
+    part.retain(keeps);
+    part.shrink_to_fit();
 }
 
 /// The orders of the photons that answer a sensor; none where tallies do. Photons of order n are the fluence of

@@ -141,7 +141,7 @@ pub fn by_given_photons(
                 .iter_mut()
                 .for_each(|photon| photon.position = periodic::wrap(photon.position, cell.side));
         }
-        let stored = Stored { photons: vec![photons], beams: Vec::new(), planes: Vec::new(), emitted };
+        let stored = Stored { photons: vec![photons.into()], beams: Vec::new(), planes: Vec::new(), emitted };
         let maps = maps_of(scene, (&sensors, wanted), stored, margin, (settings.seed, replicate))?;
         let mut estimates: Vec<_> = sensors.iter().map(|s| vec![Spectrum::ZERO; bins(s)]).collect();
         let asked = Asked { surroundings: &surroundings, sensors: &sensors, settings };

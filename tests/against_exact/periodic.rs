@@ -9,7 +9,7 @@ use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use turbid::estimators::boundary::{Boundary, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel, count_within};
-use turbid::photons::{Photon, PhotonMap};
+use turbid::photons::{Photon, PhotonMap, Photons};
 use turbid::rng::{Purpose, Stream};
 use turbid::transport::NoProgress;
 
@@ -18,7 +18,7 @@ use turbid::transport::NoProgress;
 fn photons_of_an_oblique_beam_lie_evenly_over_the_cell() {
     for how in [Incidence::Beam(0.3), Incidence::Beam(1.0), Incidence::Diffuse] {
         let scene = slab(2.0, 0.9, 0.75, how);
-        let photons = pass(&scene, &[], HISTORIES, 1, |p| p.order < 4).media.concat();
+        let photons = pass(&scene, &[], HISTORIES, 1, |p| p.order < 4).photons().collect::<Vec<_>>();
         assert!(
             photons
                 .iter()
@@ -63,7 +63,7 @@ fn copies_are_those_of_the_lattice(side: DVec2) {
         order: 0,
         flags: turbid::photons::Flags::NONE,
     };
-    let photons: Vec<Photon> =
+    let photons: Photons =
         (0..500).map(|_| photon(DVec3::from_array(stream.triple()) * side.extend(1.0))).collect();
     let map = |reach: f64| PhotonMap::periodic(vec![photons.clone()], 1, Some((side, reach)), &NoProgress);
     assert!(map(1.01 * CELL).is_err() && map(-0.1).is_err());

@@ -10,7 +10,7 @@ use turbid::geometry::{Mesh, Shape};
 use turbid::integrators::path;
 use turbid::light::{Beam, Light, Section};
 use turbid::math::{Ray, sin_cos};
-use turbid::photons::{Emitter, Histories, Photon, Run, Storage};
+use turbid::photons::{Emitter, Histories, Photon, Photons, Run, Storage};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Interior, Object, Scene, SceneParts};
 use turbid::stats::Moments;
@@ -47,8 +47,9 @@ fn density(scene: &Scene, center: DVec3, radius: f64, count: u64) -> Moments {
     for replicate in 0..64 {
         let histories = Histories { count, seed: 1, replicate, max_order: None };
         let pass = Run::new(scene, &emitter, histories).pass(&OnSurfaces, &NoProgress).unwrap();
-        let near = |p: &&Photon| p.position.distance(center) < radius;
-        let power: f64 = pass.surfaces.iter().flatten().filter(near).map(|p| f64::from(p.power.x)).sum();
+        let near = |p: &Photon| p.position.distance(center) < radius;
+        let power: f64 =
+            pass.surfaces.iter().flat_map(Photons::iter).filter(near).map(|p| f64::from(p.power.x)).sum();
         moments.push(power / (pass.emitted() as f64 * PI * radius * radius));
     }
     moments

@@ -70,7 +70,7 @@ pub fn layer_means<const N: usize>(
         let mut sums = vec![[0.0; LAYERS]; N];
         for photon in pass.photons() {
             let index = ((photon.position.z / tau * LAYERS as f64) as usize).min(LAYERS - 1);
-            number(photon, &mut |which, value| {
+            number(&photon, &mut |which, value| {
                 sums[which][index] += value / (pass.emitted() as f64 * volume)
             });
         }
@@ -132,7 +132,7 @@ pub fn by_histories(pass: &Pass) -> f64 {
 /// The same, traced until 16 photons are stored and the last path cut: over the histories begun. Every history of a thick
 /// slab collides, and begins with a photon of order 0.
 pub fn until_so_many_are_stored(pass: &Pass) -> f64 {
-    let stored = &pass.media.concat()[..16];
+    let stored = &pass.photons().collect::<Vec<_>>()[..16];
     16.0 / stored.iter().filter(|photon| photon.order == 0).count() as f64
 }
 

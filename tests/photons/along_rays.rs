@@ -68,7 +68,7 @@ fn rays_run_through_the_copies_of_a_cell() {
     let mut stream = Stream::new(8, Purpose::Synthetic, 0, 0);
     let photons: Vec<Photon> =
         (0..500).map(|_| photon(DVec3::from(stream.triple()) * side.extend(1.0), Vec3::Z)).collect();
-    let map = PhotonMap::periodic(vec![photons.clone()], 1, Some((side, reach)), &NoProgress).unwrap();
+    let map = PhotonMap::periodic(vec![photons.clone().into()], 1, Some((side, reach)), &NoProgress).unwrap();
     let mut found = 0;
     for trial in 0..60 {
         let dir = match trial % 6 {
@@ -467,8 +467,9 @@ fn copies_of_a_cell_have_their_radii() {
         Photon { position, ..*one }
     });
     let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
-    let of =
-        |photons: Vec<Photon>| PhotonMap::periodic(vec![photons], 1, Some((side, 0.5)), &NoProgress).unwrap();
+    let of = |photons: Vec<Photon>| {
+        PhotonMap::periodic(vec![photons.into()], 1, Some((side, 0.5)), &NoProgress).unwrap()
+    };
     let maps = [of(here.clone()), of(moved.collect())];
     let mut found = 0;
     for dir in [DVec3::Z, DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, -0.8, 0.6)] {

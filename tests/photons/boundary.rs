@@ -41,7 +41,7 @@ fn synthetic(profile: Profile, lower: DVec3, upper: DVec3) -> Synthetic {
 
 /// The photons of a synthetic box that lie in a shape, as one pass would have stored them.
 fn cut(box_map: &PhotonMap, shape: &Shape) -> PhotonMap {
-    let photons = box_map.tree().photons().filter(|p| shape.contains(p.position)).collect();
+    let photons: Vec<Photon> = box_map.tree().photons().filter(|p| shape.contains(p.position)).collect();
     PhotonMap::new(photons, box_map.emitted()).unwrap()
 }
 
@@ -661,7 +661,8 @@ fn rejected_photons_set_no_radius() {
             synthetic(Profile::Step { edge: 0.0 }, low, high).map(Number::Expected(2400), SEED, replicate);
         let rest =
             synthetic(Profile::Constant, low, high).map(Number::Expected(1600), SEED, 1 << 20 | replicate);
-        let photons = step.unwrap().tree().photons().chain(rest.unwrap().tree().photons()).collect();
+        let photons: Vec<Photon> =
+            step.unwrap().tree().photons().chain(rest.unwrap().tree().photons()).collect();
         PhotonMap::new(photons, 4000).unwrap()
     };
     let corner = DVec3::new(0.0, -2.0, -2.0);

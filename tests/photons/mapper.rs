@@ -21,7 +21,7 @@ use turbid::light::Faces;
 use turbid::math::{Asymmetry, FOUR_PI, Positive, Ray, cosine_pair, exp, exp_m1, warp};
 use turbid::phase::{Phase, PhaseFunction};
 use turbid::photons::maps::{Indirect, MapReport, Maps, fill};
-use turbid::photons::{Flags, Photon, PhotonMap};
+use turbid::photons::{Flags, Photon, PhotonMap, Photons};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Region, Scene};
 use turbid::stats::Moments;
@@ -256,7 +256,7 @@ fn flat_surfaces_are_even_up_to_their_edges() {
                     flags: Flags::DIFFUSE,
                 }
             });
-            let global = PhotonMap::new(photons.collect(), N).unwrap();
+            let global = PhotonMap::new(photons.collect::<Photons>(), N).unwrap();
             let maps = Maps {
                 global: Some(global),
                 caustic: None,

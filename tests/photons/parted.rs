@@ -18,9 +18,9 @@ use turbid::integrators::mapper::{Mapper, Settings, medium_extents};
 use turbid::integrators::path;
 use turbid::math::{Asymmetry, FOUR_PI, Ray};
 use turbid::phase::Phase;
-use turbid::photons::PhotonMap;
 use turbid::photons::maps::{Indirect, fill};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
+use turbid::photons::{PhotonMap, Photons};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Interior, Object, Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
@@ -256,7 +256,8 @@ fn map(field: &dyn Fn(DVec3) -> f64, photons: u64, replicate: u64) -> PhotonMap 
     let even = Synthetic::new(Profile::Constant, DVec3::splat(-1.0), DVec3::ONE).unwrap();
     let all = even.map(Number::Expected(photons), SEED, replicate).unwrap();
     let mut stream = Stream::new(SEED, Purpose::Synthetic, 1 << 32 | replicate, 0);
-    let kept = all.tree().photons().filter(|photon| stream.unit() < field(photon.position)).collect();
+    let kept: Photons =
+        all.tree().photons().filter(|photon| stream.unit() < field(photon.position)).collect();
     PhotonMap::new(kept, all.emitted()).unwrap()
 }
 

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use turbid::estimators::{Gather, Kernel, cap_share, irradiance};
 use turbid::photons::tree::Tangent;
-use turbid::photons::{Flags, Photon, PhotonMap};
+use turbid::photons::{Flags, Photon, PhotonMap, Photons};
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::Moments;
 
@@ -174,7 +174,7 @@ fn a_uniform_plane() {
                     let [x, y] = stream.pair();
                     photon(DVec3::new(x, y, 0.0), Vec3::Z)
                 };
-                let map = PhotonMap::new((0..N).map(|_| place()).collect(), N).unwrap();
+                let map = PhotonMap::new((0..N).map(|_| place()).collect::<Photons>(), N).unwrap();
                 let spots =
                     [0.2, 0.4, 0.6, 0.8].into_iter().flat_map(|x| [0.2, 0.4, 0.6, 0.8].map(|y| (x, y)));
                 let read: Vec<f64> = spots

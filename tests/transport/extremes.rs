@@ -231,7 +231,7 @@ fn few_photons_in_the_map() {
         order: 1,
         flags: turbid::photons::Flags::MEDIUM,
     };
-    let map = PhotonMap::new((0..5).map(|i| photon(0.1 * f64::from(i))).collect(), 10).unwrap();
+    let map = PhotonMap::new((0..5).map(|i| photon(0.1 * f64::from(i))).collect::<Vec<_>>(), 10).unwrap();
     let estimate = fluence(&map, Spectrum::grey(2.0), Gather::nearest(50, 1.0).unwrap());
     let ball = 4.0 / 3.0 * PI;
     assert!(estimate.underfull && estimate.found == 5);

@@ -86,7 +86,7 @@ fn bytes(photon: &Photon) -> Vec<u8> {
 #[test]
 fn photons_of_a_small_run() {
     let scene = slab(2.0, 0.9, 0.75, Incidence::Beam(0.5));
-    let photons = crate::support::run::pass(&scene, &[], 10_000, 1, |_| true).media.concat();
+    let photons = crate::support::run::pass(&scene, &[], 10_000, 1, |_| true).photons().collect::<Vec<_>>();
     let found = (photons.len(), format!("{:016x}", digest(photons.iter().flat_map(bytes))));
     assert_eq!((found.0, found.1.as_str()), RUN);
 }

@@ -184,7 +184,9 @@ fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
     }
     let scene = colorful();
     let photons = |threads: usize| {
-        in_pool(threads, || photon_bits(&pass(&scene, &[], 20_000, 7, |_| true).media.concat()))
+        in_pool(threads, || {
+            photon_bits(&pass(&scene, &[], 20_000, 7, |_| true).photons().collect::<Vec<_>>())
+        })
     };
     let one = photons(1);
     assert!(one.len() > 10_000 && photons(2) == one && photons(4) == one);
@@ -224,8 +226,8 @@ fn scale_changes_no_bit() {
 #[test]
 fn the_number_of_histories_changes_no_mean() {
     let scene = builtin("slab", &[]);
-    let short = pass(&scene, &[], 10_000, 5, |_| true).media.concat();
-    let long = pass(&scene, &[], 40_000, 5, |_| true).media.concat();
+    let short = pass(&scene, &[], 10_000, 5, |_| true).photons().collect::<Vec<_>>();
+    let long = pass(&scene, &[], 40_000, 5, |_| true).photons().collect::<Vec<_>>();
     assert!(photon_bits(&long)[..short.len()] == photon_bits(&short)[..]);
     let fluence = |photons: u64, seed: u64| -> Moments {
         let settings =

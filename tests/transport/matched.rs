@@ -71,7 +71,7 @@ fn nothing_is_specular() {
             plan.has_matched && plan.has_dielectrics && !plan.has_specular && plan.unreachable.is_empty()
         );
         assert!(!regions.plan().has_matched && Emitter::towards_specular(&interiors).is_none());
-        let photons = pass(&interiors, &[], N, 1, |_| true).media.concat();
+        let photons = pass(&interiors, &[], N, 1, |_| true).photons().collect::<Vec<_>>();
         assert!(photons.iter().any(|p| p.flags.is_direct()));
         assert!(!photons.iter().any(|p| p.flags.has(turbid::photons::Flags::SPECULAR)));
     }

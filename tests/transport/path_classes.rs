@@ -46,7 +46,7 @@ fn room_with(radius: f64) -> Scene {
 }
 
 fn whole() -> Vec<Photon> {
-    pass(&room(), &[], N, 1, |_| true).media.concat()
+    pass(&room(), &[], N, 1, |_| true).photons().collect::<Vec<_>>()
 }
 
 /// Every set of flags.
@@ -112,8 +112,8 @@ fn the_caller_decides_what_a_pass_keeps() {
     let selected = |keep: &(dyn Fn(&Photon) -> bool + Sync)| {
         let kept = pass(&room(), &[], N, 1, keep);
         assert_eq!((kept.emitted(), kept.report.collisions), (N, everything.report.collisions));
-        let expected: Vec<Photon> = everything.photons().filter(|p| keep(p)).copied().collect();
-        let kept = kept.media.concat();
+        let expected: Vec<Photon> = everything.photons().filter(|p| keep(p)).collect();
+        let kept = kept.photons().collect::<Vec<_>>();
         assert!(kept == expected, "{} kept, not {}", kept.len(), expected.len());
         kept
     };
@@ -170,8 +170,10 @@ fn photons_off_the_mirror_are_the_light_of_the_image() {
     let (mut by_mirror, mut uncollided) = (Moments::new(), Moments::new());
     for replicate in 0..MAPS {
         let histories = Histories { count: PHOTONS, seed: 2, replicate, max_order: Some(0) };
-        let photons =
-            shoot(&scene, histories, &[], is_in(Orders::only(0)), &NoProgress).unwrap().media.concat();
+        let photons = shoot(&scene, histories, &[], is_in(Orders::only(0)), &NoProgress)
+            .unwrap()
+            .photons()
+            .collect::<Vec<_>>();
         let estimate = |photons: Vec<Photon>| {
             let map = PhotonMap::new(photons, PHOTONS).unwrap();
             let estimator = Estimator::new(Kernel::Uniform, Gather::radius(radius).unwrap());

@@ -8,8 +8,8 @@ use glam::DVec3;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel, for_each_photon};
 use turbid::geometry::{Cuboid, Rectangle, Shape};
-use turbid::photons::PhotonMap;
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
+use turbid::photons::{PhotonMap, Photons};
 use turbid::stats::Moments;
 use turbid_analytic::boundary as referee;
 
@@ -161,7 +161,7 @@ fn map(settings: &Settings, cell: &CellId) -> anyhow::Result<PhotonMap> {
     };
     let above = half(0.0, 0.5, number, 0)?;
     let below = half(-0.5, 0.0, (number as f64 * DARK).round() as u64, 1)?;
-    let photons = above.tree().photons().chain(below.tree().photons()).collect();
+    let photons: Photons = above.tree().photons().chain(below.tree().photons()).collect();
     // Density 1 on the bright side is `number` in half the unit cube.
     Ok(PhotonMap::new(photons, 2 * number)?)
 }

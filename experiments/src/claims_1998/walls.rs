@@ -16,7 +16,7 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Mesh, Shape};
 use turbid::math::{Ray, warp};
 use turbid::phase::{Isotropic, Phase};
-use turbid::photons::{Flags, Photon, PhotonMap};
+use turbid::photons::{Flags, Photon, PhotonMap, Photons};
 use turbid::rng::{Purpose, Stream};
 
 /// The group of all cells.
@@ -103,7 +103,7 @@ fn map(settings: &Settings, replicate: u64) -> anyhow::Result<PhotonMap> {
             flags: Flags::MEDIUM,
         }
     };
-    Ok(PhotonMap::new((0..count).map(photon).collect(), count)?)
+    Ok(PhotonMap::new((0..count).map(photon).collect::<Photons>(), count)?)
 }
 
 /// Measures the cell.

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimate, Estimator, Gather, Kernel, count_within};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
-use turbid::photons::{Flags, Photon, PhotonMap};
+use turbid::photons::{Flags, Photon, PhotonMap, Photons};
 
 /// Relative rounding of a sum: at most 32 photons a lane are added in single precision before the sum goes on in
 /// double precision, and the weight has a few roundings of its own.
@@ -91,7 +91,7 @@ pub fn coincident(rows: &mut Vec<Checked>) -> anyhow::Result<()> {
     let name = "1000 photons and one beyond: the nearest 10 from within";
     rows.push(Checked::new(class, name, estimate.value[0], exact, exact * SUM));
     // On the lattice of powers of two nothing is rounded: a photon on the rim is inside.
-    let line = (0..=64).map(|i| photon(DVec3::X * (f64::from(i) / 64.0))).collect();
+    let line: Photons = (0..=64).map(|i| photon(DVec3::X * (f64::from(i) / 64.0))).collect();
     let map = PhotonMap::new(line, 10)?;
     for (radius, exact) in [(0.25, 33.0), (0.5, 65.0), (1.0 / 128.0, 1.0)] {
         let found = count_within(&map, DVec3::X * 0.5, radius) as f64;

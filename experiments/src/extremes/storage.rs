@@ -118,7 +118,7 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let mut output = CellOutput::new();
     output.count("photons emitted", pass.emitted());
     output.count("collisions", pass.report.collisions);
-    let stored = pass.media.concat();
+    let stored = pass.photons().collect::<Vec<_>>();
     let plain = Plain::new(&stored, pass.emitted());
     let probes = probes();
     let mut exact: Vec<Vec<(f64, usize)>> = Vec::new();

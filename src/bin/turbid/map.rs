@@ -208,8 +208,10 @@ impl Map {
         let pass = shoot(scene, histories(emitted), &[], |_| true, &bar);
         bar.finish();
         let pass = pass?;
-        let mut photons = Vec::with_capacity(pass.media.iter().map(Vec::len).sum());
-        photons.extend(pass.media.into_iter().flatten().map(|photon| (photon, emitted)));
+        let mut photons = Vec::with_capacity(pass.media.iter().map(|part| part.len()).sum());
+        for part in pass.media {
+            photons.extend(part.iter().map(|photon| (photon, emitted)));
+        }
         Ok(photons)
     }
 

@@ -26,7 +26,7 @@ pub use settings::{Amount, Emitted, Indirect, MapSettings, PILOT};
 
 use super::beams::BeamMap;
 use super::importance::Importance;
-use super::{Part, Pass, PassReport, Photon, PhotonMap, Run};
+use super::{Part, Pass, PassReport, PhotonMap, Photons, Run};
 use crate::error::Result;
 use crate::rng::Purpose;
 use crate::scene::Scene;
@@ -159,7 +159,7 @@ pub fn fill_part(
     scene.check_emission()?;
     let emitters = Emitters::of(scene, importance);
     let (Emitted { global, volume, caustic }, mut report) = (emitted, MapReport::default());
-    let mut build = |parts: Vec<Vec<Photon>>, emitted: u64| {
+    let mut build = |parts: Vec<Photons>, emitted: u64| {
         if emitted == 0 {
             return Ok(None);
         }

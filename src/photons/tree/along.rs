@@ -64,7 +64,7 @@ mod tests {
             let position = |stream: &mut Stream| {
                 far + (DVec3::from(stream.triple()) - 0.5) * DVec3::new(size, 0.3 * size, 0.01 * size)
             };
-            let photons = (0..count).map(|_| photon(position(&mut stream))).collect();
+            let photons: Vec<_> = (0..count).map(|_| photon(position(&mut stream))).collect();
             let tree = PhotonTree::new(photons).unwrap();
             for which in 0..10 {
                 let dir = match which {

@@ -3,23 +3,23 @@
 mod along;
 mod block;
 mod boxes;
+mod columns;
 mod cylinder;
 mod facing;
 mod nearest;
 mod order;
 mod radii;
-mod records;
 mod scratch;
 mod units;
 mod within;
 
-use super::{Flags, Photon};
+use super::{Flags, Photon, Photons};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
 use block::BLOCK;
+use columns::{Columns, rows};
 use glam::{DVec3, Vec3};
 use order::Entry;
-use records::Records;
 use wide::f32x8;
 
 pub use block::ROW;
@@ -62,15 +62,15 @@ impl PhotonTree {
     /// # Errors
     /// [`Error::NonFinite`] if a position, direction, normal or power is not finite; [`Error::OutOfRange`] beyond
     /// 2^32 photons.
-    pub fn new(photons: Vec<Photon>) -> Result<Self> {
-        Self::build(Records::new(vec![photons]), false, &NoProgress)
+    pub fn new(photons: impl Into<Photons>) -> Result<Self> {
+        Self::build(vec![photons.into()], false, &NoProgress)
     }
 
     /// The same tree, bit for bit, built by the threads of the current pool.
     ///
     /// # Errors
     /// As [`PhotonTree::new`].
-    pub fn new_parallel(photons: Vec<Photon>) -> Result<Self> {
+    pub fn new_parallel(photons: impl Into<Photons>) -> Result<Self> {
         Self::new_watched(photons, &NoProgress)
     }
 
@@ -78,91 +78,41 @@ impl PhotonTree {
     ///
     /// # Errors
     /// As [`PhotonTree::new`].
-    pub fn new_watched(photons: Vec<Photon>, progress: &dyn Progress) -> Result<Self> {
-        Self::of_parts(vec![photons], progress)
+    pub fn new_watched(photons: impl Into<Photons>, progress: &dyn Progress) -> Result<Self> {
+        Self::of_parts(vec![photons.into()], progress)
     }
 
-    /// The same tree, bit for bit, of photons in parts: they are not brought together first.
+    /// The same tree, bit for bit, of photons in parts; each is gone when the next is taken.
     ///
     /// # Errors
     /// As [`PhotonTree::new`].
-    pub fn of_parts(parts: Vec<Vec<Photon>>, progress: &dyn Progress) -> Result<Self> {
-        Self::build(Records::new(parts), true, progress)
+    pub fn of_parts(parts: Vec<Photons>, progress: &dyn Progress) -> Result<Self> {
+        Self::build(parts, true, progress)
     }
 
-    fn build(photons: Records, parallel: bool, progress: &dyn Progress) -> Result<Self> {
-        let stored = photons.len();
+    fn build(parts: Vec<Photons>, is_parallel: bool, progress: &dyn Progress) -> Result<Self> {
+        let stored = parts.iter().map(Photons::len).sum::<usize>();
         if u32::try_from(stored).is_err() {
             return Err(Error::out_of_range("the number of photons in one map", stored as f64, "below 2^32"));
         }
-        let units = Units::of(photons.iter())?;
-        let mut entries: Vec<Entry> = photons
-            .iter()
-            .enumerate()
-            .map(|(index, photon)| Entry {
-                position: units.relative(photon.position).as_vec3().to_array(),
-                index: index as u32,
-            })
-            .collect();
+        let units = Units::of(&parts)?;
+        let (mut entries, columns) = Columns::of(parts, &units);
         if stored > 0 {
-            order::kd_order(&mut entries, &photons, parallel, progress);
+            order::kd_order(&mut entries, &columns, is_parallel, progress);
         }
-
-        let is_on_surfaces = photons.iter().any(|photon| photon.normal != Vec3::ZERO);
-        let blocks = stored.div_ceil(BLOCK);
-        let rows = 2 * blocks;
-        let mut tree = PhotonTree {
-            units,
-            stored,
-            identity: scratch::new_identity(),
-            positions: Vec::with_capacity(blocks),
-            dirs: Vec::with_capacity(rows),
-            normals: Vec::with_capacity(if is_on_surfaces { rows } else { 0 }),
-            powers: Vec::with_capacity(rows),
-            histories: Vec::with_capacity(stored),
-            levels: Vec::new(),
-        };
-        // Positions first: beside the records, the order alone is needed for the rest.
-        for block in entries.chunks(BLOCK) {
-            tree.push_positions(block);
-        }
+        let positions: Vec<[Row; 2]> = entries.chunks(BLOCK).map(block_of).collect();
         let mut order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
         // The numbers were collected in the entries' memory, of which they need a quarter.
         order.shrink_to_fit();
-        for block in order.chunks(BLOCK) {
-            tree.push_block(block, &photons, is_on_surfaces);
-        }
-        tree.levels = boxes::levels(&tree.positions, stored);
-        Ok(tree)
-    }
-
-    fn push_positions(&mut self, entries: &[Entry]) {
-        // Padding lies infinitely far away, farther than any radius, and carries nothing.
-        let mut position = [[f32::INFINITY; BLOCK]; 3];
-        for (lane, entry) in entries.iter().enumerate() {
-            position.iter_mut().zip(entry.position).for_each(|(row, x)| row[lane] = x);
-        }
-        self.positions.push([row(&position, 0), row(&position, ROW)]);
-    }
-
-    fn push_block(&mut self, order: &[u32], photons: &Records, is_on_surfaces: bool) {
-        let mut dir = [[0.0; BLOCK]; 3];
-        let mut normal = [[0.0; BLOCK]; 3];
-        let mut power = [[0.0; BLOCK]; 3];
-        for (lane, index) in order.iter().enumerate() {
-            let photon = photons.get(*index);
-            for axis in 0..3 {
-                dir[axis][lane] = photon.dir[axis];
-                normal[axis][lane] = photon.normal[axis];
-                power[axis][lane] = photon.power[axis];
-            }
-            self.histories.push((photon.order, photon.flags));
-        }
-        self.dirs.extend([row(&dir, 0), row(&dir, ROW)]);
-        if is_on_surfaces {
-            self.normals.extend([row(&normal, 0), row(&normal, ROW)]);
-        }
-        self.powers.extend([row(&power, 0), row(&power, ROW)]);
+        // One column after the other, each gone before the next comes.
+        let Columns { dirs, normals, powers, histories } = columns;
+        let dirs = rows(dirs, &order, is_parallel);
+        let normals = rows(normals, &order, is_parallel);
+        let powers = rows(powers, &order, is_parallel);
+        let histories = order.iter().map(|index| histories[*index as usize]).collect();
+        let levels = boxes::levels(&positions, stored);
+        let identity = scratch::new_identity();
+        Ok(PhotonTree { units, stored, identity, positions, dirs, normals, powers, histories, levels })
     }
 
     /// Number of photons.
@@ -220,6 +170,15 @@ impl PhotonTree {
     pub fn photons(&self) -> impl Iterator<Item = Photon> + '_ {
         (0..self.stored).map(|place| self.photon(place))
     }
+}
+
+/// The positions of a block, whose padding lies infinitely far away, farther than any radius, and carries nothing.
+fn block_of(entries: &[Entry]) -> [Row; 2] {
+    let mut position = [[f32::INFINITY; BLOCK]; 3];
+    for (lane, entry) in entries.iter().enumerate() {
+        position.iter_mut().zip(entry.position).for_each(|(row, x)| row[lane] = x);
+    }
+    [row(&position, 0), row(&position, ROW)]
 }
 
 /// Eight of a block's sixteen vectors.

@@ -1,14 +1,17 @@
 //! The kd order: photons that are neighbours in space become neighbours in memory.
 
 use super::block::BLOCK;
-use super::records::Records;
-use crate::photons::Photon;
+use super::columns::Columns;
 use crate::transport::Progress;
 use std::cmp::Ordering;
 use wide::f32x4;
 
 /// Ranges shorter than this are ordered by one thread; the order itself does not depend on it.
 const SERIAL: usize = 1 << 14;
+
+/// Ranges shorter than this are ordered with memory to move entries to, half as much again as they take; longer ones in place, a
+/// little slower, until all threads together need an eighth of that for the whole. Nor on this.
+const MOVED: usize = 1 << 20;
 
 /// A photon on its way into the tree: its position in the tree's units, and where its record is.
 #[derive(Debug, Clone, Copy)]
@@ -25,14 +28,14 @@ impl Entry {
 /// Puts entries in kd order: every range of more than one block is split across the widest axis of its box,
 /// at the largest power-of-two number of blocks below its own, nearer photons first.
 ///
-/// Photons at the same coordinate are ordered by their records, so that the order is a function of the set of
+/// Photons at the same coordinate are ordered by what the tree holds of them, so that the order is a function of the set of
 /// photons and not of how they came.
 ///
 /// `progress` is told of every entry that has its place.
-pub(super) fn kd_order(entries: &mut [Entry], photons: &Records, parallel: bool, progress: &dyn Progress) {
-    let mut spare = vec![Entry::NONE; entries.len()];
-    let mut band = vec![Entry::NONE; entries.len() / 2];
-    Order { photons, parallel, progress }.sort(entries, &mut spare, &mut band, true);
+pub(super) fn kd_order(entries: &mut [Entry], photons: &Columns, parallel: bool, progress: &dyn Progress) {
+    let threads = if parallel { rayon::current_num_threads() } else { 1 };
+    let most = (entries.len() / (8 * threads)).max(MOVED);
+    Order { photons, parallel, progress }.sort_in_place(entries, most);
     if entries.len() <= SERIAL {
         progress.advance(entries.len() as u64);
     }
@@ -41,22 +44,45 @@ pub(super) fn kd_order(entries: &mut [Entry], photons: &Records, parallel: bool,
 /// What the whole recursion shares.
 #[derive(Clone, Copy)]
 struct Order<'a> {
-    photons: &'a Records,
+    photons: &'a Columns,
     parallel: bool,
     progress: &'a dyn Progress,
 }
 
 impl Order<'_> {
+    /// Orders `entries`, ranges of at most `most` of them with memory to move them to.
+    fn sort_in_place(self, entries: &mut [Entry], most: usize) {
+        let count = entries.len();
+        if count <= most {
+            let mut spare = vec![Entry::NONE; count];
+            let mut band = vec![Entry::NONE; count / 2];
+            return self.sort(entries, &mut spare, &mut band, true);
+        }
+        let middle = middle(count);
+        match widest_axis(entries) {
+            0 => self.select::<0>(entries, middle),
+            1 => self.select::<1>(entries, middle),
+            _ => self.select::<2>(entries, middle),
+        }
+        let (nearer, farther) = entries.split_at_mut(middle);
+        if self.parallel {
+            rayon::join(|| self.sort_in_place(nearer, most), || self.sort_in_place(farther, most));
+        } else {
+            self.sort_in_place(nearer, most);
+            self.sort_in_place(farther, most);
+        }
+        self.count_placed(count);
+    }
+
     /// Orders `entries`, with `spare` and `band`, half as long, to work in; the result is left in `entries`
     /// if `in_place`, else in `spare`.
     fn sort(self, entries: &mut [Entry], spare: &mut [Entry], band: &mut [Entry], in_place: bool) {
         let count = entries.len();
-        let blocks = count.div_ceil(BLOCK);
         let axis = widest_axis(entries);
-        if blocks <= 1 {
+        if count <= BLOCK {
             return self.sort_block(axis, entries, spare, in_place);
         }
-        let middle = blocks.next_power_of_two() / 2 * BLOCK;
+        let middle = middle(count);
         let moved = match axis {
             0 => self.split::<0>(entries, spare, band, middle),
             1 => self.split::<1>(entries, spare, band, middle),
@@ -77,8 +103,14 @@ impl Order<'_> {
             this.sort(nearer, nearer_spare, nearer_band, in_place);
             this.sort(farther, farther_spare, farther_band, in_place);
         }
+        self.count_placed(count);
+    }
+
+    /// Tells of a range whose two parts are in order: of those that are too short to tell of themselves.
+    fn count_placed(self, count: usize) {
         if count > SERIAL {
-            let placed: usize = [middle, count - middle].into_iter().filter(|n| *n <= SERIAL).sum();
+            let parts = [middle(count), count - middle(count)];
+            let placed: usize = parts.into_iter().filter(|n| *n <= SERIAL).sum();
             if placed > 0 {
                 self.progress.advance(placed as u64);
             }
@@ -174,6 +206,11 @@ impl Order<'_> {
     }
 }
 
+/// Entries of the nearer part of a range of more than one block.
+fn middle(count: usize) -> usize {
+    count.div_ceil(BLOCK).next_power_of_two() / 2 * BLOCK
+}
+
 /// Two values that the entry of rank `middle` lies between, three standard deviations of the sample's rank
 /// apart from it; none for a short range.
 fn pivots<const AXIS: usize>(entries: &[Entry], middle: usize) -> Option<[f32; 2]> {
@@ -210,20 +247,20 @@ fn widest_axis(entries: &[Entry]) -> usize {
 }
 
 #[cold]
-fn compare_records(a: &Entry, b: &Entry, photons: &Records) -> Ordering {
+fn compare_records(a: &Entry, b: &Entry, photons: &Columns) -> Ordering {
     let record = |entry: &Entry| {
-        let Photon { position: p, dir, normal, power, order, flags } = *photons.get(entry.index);
-        let place = [p.x, p.y, p.z].map(key);
-        let rest = [dir, normal, power].map(|v| v.to_array().map(|c| key(f64::from(c))));
-        (entry.position.map(|c| key(f64::from(c))), place, rest, order, flags_key(flags))
+        let index = entry.index as usize;
+        let vectors = [photons.dirs[index], photons.normal(index), photons.powers[index]];
+        let (order, flags) = photons.histories[index];
+        (entry.position.map(key), vectors.map(|v| v.to_array().map(key)), order, flags_key(flags))
     };
     record(a).cmp(&record(b))
 }
 
 /// An integer that orders as the number does.
-fn key(x: f64) -> i64 {
-    let bits = x.to_bits() as i64;
-    bits ^ (((bits >> 63) as u64) >> 1) as i64
+fn key(x: f32) -> i32 {
+    let bits = x.to_bits() as i32;
+    bits ^ (((bits >> 31) as u32) >> 1) as i32
 }
 
 fn flags_key(flags: crate::photons::Flags) -> u8 {

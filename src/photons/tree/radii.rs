@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn radii_do_not_depend_on_the_threads() {
         let mut stream = Stream::new(16, Purpose::Synthetic, 0, 0);
-        let photons = (0..20_000).map(|_| photon(DVec3::from(stream.triple()))).collect();
+        let photons: Vec<_> = (0..20_000).map(|_| photon(DVec3::from(stream.triple()))).collect();
         let tree = PhotonTree::new(photons).unwrap();
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -1,7 +1,7 @@
 //! The tree's own unit of length: a power of two, about half the map's box.
 
 use crate::error::{Error, Result};
-use crate::photons::Photon;
+use crate::photons::{Photon, Photons};
 use glam::DVec3;
 
 /// Distances beyond this many units see the whole map as one point, and distances below its inverse are not
@@ -21,14 +21,14 @@ pub(in crate::photons) struct Units {
 }
 
 impl Units {
-    /// The units of the box of `photons`, which must be finite in every part.
-    pub(super) fn of<'a>(photons: impl Iterator<Item = &'a Photon>) -> Result<Self> {
-        let mut photons = photons.peekable();
+    /// The units of the box of all photons, which must be finite in every part.
+    pub(super) fn of(parts: &[Photons]) -> Result<Self> {
+        let mut photons = parts.iter().flat_map(Photons::iter).peekable();
         let start = photons.peek().map_or(DVec3::ZERO, |photon| photon.position);
         let (mut lower, mut upper, mut non_finite) = (start, start, 0);
         for Photon { position, dir, normal, power, .. } in photons {
-            lower = lower.min(*position);
-            upper = upper.max(*position);
+            lower = lower.min(position);
+            upper = upper.max(position);
             non_finite += u64::from(
                 !(position.is_finite() && dir.is_finite() && normal.is_finite() && power.is_finite()),
             );
