@@ -34,9 +34,9 @@ pub struct Photons {
     pub(super) histories: Vec<(u16, Flags)>,
 }
 
-/// Parts of fewer photons than these are joined: columns of more are so large that the system's allocator asks for each alone and
-/// gives it back at once (glibc: from 32 MB at the latest).
-const PART: usize = 3 << 20;
+/// Parts of fewer photons than these become one as soon as they are as many together: such columns are so large that the system's
+/// allocator gives each back at once, where small ones leave holes behind.
+const PART: usize = 1 << 19;
 
 impl Photons {
     /// Photons of media, with room for so many.
@@ -116,7 +116,7 @@ impl Photons {
         self.histories.shrink_to_fit();
     }
 
-    /// Adds others behind its own, column by column.
+    /// Adds others behind its own, column by column; those of media make room for normals.
     fn append(&mut self, mut others: Photons) {
         if !(self.normals.is_empty() && others.normals.is_empty()) {
             self.normals.resize(self.len(), Vec3::ZERO);
@@ -129,13 +129,17 @@ impl Photons {
         self.histories.append(&mut others.histories);
     }
 
-    /// Adds parts behind parts, small ones to the last.
+    /// Adds parts behind parts; each photon is copied once at most.
     pub(super) fn join(parts: &mut Vec<Photons>, others: Vec<Photons>) {
-        for part in others {
-            match parts.last_mut() {
-                Some(last) if last.len() < PART => last.append(part),
-                _ => parts.push(part),
-            }
+        parts.extend(others);
+        let is_small = |part: &Photons| part.len() < PART;
+        let first = parts.iter().position(is_small).unwrap_or(parts.len());
+        let small = parts[first..].iter().take_while(|part| is_small(part));
+        let (number, count) = small.fold((0, 0), |(number, count), part| (number + 1, count + part.len()));
+        if count >= PART {
+            let mut one = Photons::with_capacity(count);
+            parts.drain(first..first + number).for_each(|part| one.append(part));
+            parts.insert(first, one);
         }
     }
 }

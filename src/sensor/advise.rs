@@ -156,7 +156,7 @@ impl Pilot {
     /// those of [`Pilot::run`] before its first map
     pub fn forecast(scene: &Scene, settings: &PilotSettings) -> Result<PhotonForecast> {
         let (_, chosen, margin) = Self::prepared(scene, settings)?;
-        forecast_of(scene, (&chosen, OF_POINTS), margin, (settings.photons, settings.maps, settings.seed))
+        forecast_of(scene, (&chosen, OF_POINTS), margin, (settings.photons, settings.maps, settings.seed), 1)
     }
 
     /// A pilot without maps, the probes that can be asked, and how far beyond the cell's edges they read \[L\].

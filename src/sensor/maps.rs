@@ -117,7 +117,7 @@ impl<'a> SensorMaps<'a> {
     pub fn forecast(scene: &Scene, settings: &MapSettings) -> Result<PhotonForecast> {
         let margin = checked(scene, settings.reach, settings.radiance)?;
         let sensors = (scene.sensors(), settings.radiance);
-        forecast_of(scene, sensors, margin, (settings.photons, 1, settings.seed))
+        forecast_of(scene, sensors, margin, (settings.photons, 1, settings.seed), 1)
     }
 
     /// Photons that the maps hold, those beyond the edges of a periodic cell too, beams, and planes.

@@ -14,7 +14,7 @@ use crate::geometry::Shape;
 use crate::photons::beams;
 use crate::photons::planes::{self, check_planes};
 use crate::photons::{
-    BUILD_SECONDS, Emitter, Histories, PEAK_BYTES, Part, Photon, Run, Scores, periodic, score_bytes,
+    BUILD_SECONDS, Emitter, Histories, Part, Photon, Run, Scores, peak_bytes, periodic, score_bytes,
 };
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
@@ -160,9 +160,9 @@ pub fn given_bytes(scene: &Scene, settings: &PhotonSettings, count: u64) -> Resu
     let (sensors, margin) = prepared_for_maps(scene, settings)?;
     let all = count as f64 * around(scene, margin);
     let bytes = match RadianceMaps::of([&settings.estimator]).ranges(&sensors).points.len() {
-        0 | 1 => PEAK_BYTES * all,
+        0 | 1 => peak_bytes(all),
         // All of them may be in each range.
-        maps => (size_of::<Photon>() as f64 + PEAK_BYTES * maps as f64) * all,
+        maps => size_of::<Photon>() as f64 * all + maps as f64 * peak_bytes(all),
     };
     Ok(bytes + row_bytes(scene))
 }
@@ -285,16 +285,17 @@ pub fn forecast(scene: &Scene, settings: &PhotonSettings, passes: u64) -> Result
     let (sensors, margin) = prepared(scene, settings)?;
     let PhotonSettings { photons, maps, seed, .. } = *settings;
     let wanted = RadianceMaps::of([&settings.estimator]);
-    let whole = forecast_of(scene, (&sensors, wanted), margin, (photons, maps, seed))?;
-    Ok(PhotonForecast { bytes: whole.bytes / passes as f64, ..whole })
+    forecast_of(scene, (&sensors, wanted), margin, (photons, maps, seed), passes)
 }
 
-/// The same for sensors that are checked, `margin` beyond the cell: so many photons a map, so many maps, and the seed.
+/// The same for sensors that are checked, `margin` beyond the cell: so many photons a map, so many maps, and the seed; the memory is
+/// that of one of so many passes of a map.
 pub(super) fn forecast_of(
     scene: &Scene,
     (sensors, wanted): (&[Sensor], RadianceMaps),
     margin: f64,
     (photons, maps, seed): (u64, u64, u64),
+    passes: u64,
 ) -> Result<PhotonForecast> {
     let ranges = wanted.ranges(sensors);
     let count = photons.div_ceil(64).min(FORECAST);
@@ -314,14 +315,15 @@ pub(super) fn forecast_of(
     let [met_beams, flights] = [pass.met_beams, copied_beams].map(a_history);
     let [met_planes, planes] = [pass.met_planes, copied_planes].map(a_history);
     // Where several ranges of orders have a map each, the photons of all stay until the last one.
+    let [met_a_pass, copied_a_pass] = [met, copied].map(|n| n / passes as f64);
     let of_points = match ranges.points.len() {
-        0 | 1 => PEAK_BYTES * met,
-        _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
+        0 | 1 => peak_bytes(met_a_pass),
+        _ => size_of::<Photon>() as f64 * met_a_pass + peak_bytes(copied_a_pass),
     };
     let copies = |met: u64, ranges: &[Orders]| if met > 0 { ranges.len().max(1) as f64 } else { 1.0 };
     let of_beams = met_beams * copies(pass.met_beams, &ranges.beams);
     let of_planes = met_planes * copies(pass.met_planes, &ranges.planes);
-    let bytes = of_points + beams::PEAK_BYTES * of_beams + planes::PEAK_BYTES * of_planes;
+    let bytes = of_points + (beams::PEAK_BYTES * of_beams + planes::PEAK_BYTES * of_planes) / passes as f64;
     let copied = copied + flights.max(of_beams) + planes.max(of_planes);
     let seconds = (one * photons as f64 + BUILD_SECONDS * copied) * maps as f64 / threads;
     // The scores of the blocks that are there at a time, those that they are added to, and what the threads' histories add up.

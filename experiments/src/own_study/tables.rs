@@ -6,6 +6,7 @@ use crate::harness::Estimate;
 use crate::prediction::Prediction;
 use std::collections::HashMap;
 use turbid::estimators::Gather;
+use turbid::photons::peak_bytes;
 use turbid::stats::Moments;
 
 /// A table as text, in CSV.
@@ -202,9 +203,6 @@ pub fn by(data: &Data, known: &Known) -> &'static str {
     if known.is_exact { "exact" } else { data.reference.sampler.name() }
 }
 
-/// Bytes of a photon in a map.
-const STORED_BYTES: f64 = turbid::photons::PEAK_BYTES;
-
 /// costs.csv: CPU seconds and memory of every setting, and of the rival, on this machine.
 pub fn costs(data: &[Data]) -> anyhow::Result<String> {
     let own = ["method", "filling_seconds", "reading_seconds", "peak_bytes", "samples"];
@@ -214,7 +212,7 @@ pub fn costs(data: &[Data]) -> anyhow::Result<String> {
         for setting in &data.settings {
             let mut row = parameters(data, setting);
             let stored = data.stored.iter().find(|(photons, _)| *photons == setting.photons);
-            let bytes = stored.map_or(f64::NAN, |(_, stored)| STORED_BYTES * stored);
+            let bytes = stored.map_or(f64::NAN, |(_, stored)| peak_bytes(*stored));
             row.push("photon map".to_string());
             row.extend(setting.seconds.iter().map(|seconds| cell(seconds.mean())));
             row.extend([cell(bytes), String::new()]);

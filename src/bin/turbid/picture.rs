@@ -163,8 +163,11 @@ impl Photons {
         let forecast = forecast(scene, maps, importance)?;
         let Forecast { emitted, stored, seconds, .. } = forecast;
         let total: f64 = stored.iter().sum();
-        let bytes = fixed + (forecast.bytes() + beside * total) / held.passes as f64;
+        let passes = held.passes as f64;
+        let a_pass = Forecast { stored: stored.map(|photons| photons / passes), ..forecast };
+        let bytes = fixed + a_pass.bytes() + beside * total / passes;
         memory.check(&format!("{total:.2e} photons in maps"), bytes, fixed, |part| {
+            let part = a_pass.part_in(part);
             let asked =
                 [("global", maps.global, 0), ("volume", maps.volume, 1), ("caustic", maps.caustic, 2)];
             let needed = asked.iter().filter(|(_, _, map)| stored[*map] > 0.0);

@@ -5,8 +5,7 @@ use super::settings::{Amount, Emitted, MapSettings, PILOT};
 use crate::error::{Error, Result};
 use crate::photons::importance::Importance;
 use crate::photons::pass::is_diffuse;
-use crate::photons::{BUILD_SECONDS, Pass, Run, check_end};
-use crate::photons::{PEAK_BYTES, beams};
+use crate::photons::{BUILD_SECONDS, Pass, Run, beams, check_end, part_in, peak_bytes};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{BLOCK, NoProgress};
@@ -33,7 +32,14 @@ impl Forecast {
     /// Most memory that filling the maps takes, about \[bytes\].
     pub fn bytes(&self) -> f64 {
         let [global, volume, caustic] = self.stored;
-        PEAK_BYTES * (global + caustic) + if self.has_beams { beams::PEAK_BYTES } else { PEAK_BYTES } * volume
+        let of_media = if self.has_beams { beams::PEAK_BYTES * volume } else { peak_bytes(volume) };
+        peak_bytes(global) + peak_bytes(caustic) + of_media
+    }
+
+    /// The part of the photons that takes a part of that memory: no map takes more than its own.
+    pub fn part_in(&self, part: f64) -> f64 {
+        let of_points = if self.has_beams { [self.stored[0], 0.0, self.stored[2]] } else { self.stored };
+        of_points.into_iter().map(|photons| part_in(part, photons)).fold(part, f64::min)
     }
 }
 
