@@ -137,7 +137,7 @@ fn a_wrong_method_is_an_alarm_to_the_end() {
     std::fs::write(&file, SQUARE).unwrap();
     let (file, out) = (file.to_str().unwrap(), folder.path().join("out"));
     let out = out.to_str().unwrap();
-    let own = ["--scene", file, "--out", out, "--effort", "0.02"];
+    let own = ["--scene", file, "--out", out, "--effort", "0.01"];
     let (code, said, errors) = ran(&own);
     assert_eq!((code, errors.as_str()), (Some(0), ""), "{said}");
     assert!(said.contains("\nagree; "), "{said}");
@@ -150,11 +150,11 @@ fn a_wrong_method_is_an_alarm_to_the_end() {
     assert!(smallest.contains("rectangle") && !smallest.contains("black"), "{smallest}");
     // The file shows it again.
     let again = format!("{out}/failures/square/scene.toml");
-    let (code, said, _) = ran(&["--scene", &again, "--effort", "0.02", "--control", "2", "--no-shrink"]);
+    let (code, said, _) = ran(&["--scene", &again, "--effort", "0.01", "--control", "2", "--no-shrink"]);
     assert_eq!(code, Some(1), "{said}");
     // A run over seeds, with an alarm and with too little work.
     let seeds = ["--seeds", "1000..1002", "--out", out, "--no-shrink", "--effort"];
-    let (code, said, errors) = ran(&[&seeds[..], &["0.02", "--control", "8"]].concat());
+    let (code, said, errors) = ran(&[&seeds[..], &["0.01", "--control", "8"]].concat());
     assert_eq!(code, Some(1), "{said}");
     assert!(
         said.contains("ALARM: seed 100") && errors.contains("again, four times the samples"),

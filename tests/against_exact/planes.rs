@@ -20,8 +20,9 @@ fn radiance_of_planes() {
         let how = Incidence::Beam(mu0);
         let exact_slab = referee(&exact_medium, tau, how);
         let shape = layer(tau);
-        // Peaks have a wider spread, and take fewer views.
-        let views: Vec<_> = VIEWS.into_iter().step_by(if g == 0.0 { 1 } else { 3 }).collect();
+        // Peaks have a wider spread, and take more photons and fewer views.
+        let (step, photons) = if g == 0.0 { (1, 10_000) } else { (3, 20_000) };
+        let views: Vec<_> = VIEWS.into_iter().step_by(step).collect();
         let scene = Scene::new(SceneParts {
             lights: vec![incidence(shape.clone(), how)],
             regions: vec![region(shape, 1.0, albedo, g)],
@@ -33,7 +34,7 @@ fn radiance_of_planes() {
             ..SceneParts::default()
         })
         .unwrap();
-        let measured = by_maps(&scene, (20_000, 128), 4, &[in_planes()]).remove(0);
+        let measured = by_maps(&scene, (photons, 128), 4, &[in_planes()]).remove(0);
         for ((part, mu, dphi), moments) in views.into_iter().zip(measured) {
             let (all, error) = exact(exact_slab.radiance(part * tau, mu, dphi).unwrap());
             let (once, _) = exact(single_radiance(tau, albedo, g, mu0, part * tau, mu, dphi).unwrap());

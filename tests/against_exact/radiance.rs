@@ -72,8 +72,12 @@ fn radiance_of_paths() {
             let exact_slab = referee(&exact_medium, tau, how);
             let scene = slab(tau, albedo, g, how);
             // Next events hit a sharp peak seldom: more paths, and fewer views.
-            let (histories, step) =
-                if g > 0.9 && how != Incidence::Diffuse { (4 * PATHS, 3) } else { (PATHS, 1) };
+            let (histories, step) = match (g, how) {
+                (0.95, Incidence::Diffuse) => (PATHS / 4, 1),
+                (0.75, Incidence::Diffuse) | (-0.5, Incidence::Beam(_)) => (PATHS / 2, 1),
+                (0.95, _) => (4 * PATHS, 3),
+                _ => (PATHS, 1),
+            };
             for view in VIEWS.into_iter().step_by(step) {
                 let (part, mu, dphi) = view;
                 let reference = exact_radiance(&exact_slab, part * tau, mu, dphi);

@@ -12,7 +12,7 @@ use turbid::photons::is_indirect;
 use turbid::scene::{Orders, Quantity};
 
 /// Paths a quantity and order: a bias of 0.03 of the irradiance is detected in every flux, of 0.12 in every fluence.
-const PATHS: u64 = 1 << 17;
+const PATHS: u64 = 80_000;
 const PHOTONS: u64 = 1 << 18;
 /// Orders that are told apart.
 const HIGHEST: u32 = 4;

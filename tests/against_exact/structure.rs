@@ -168,7 +168,7 @@ fn photons_and_paths_agree_in_a_world_of_two_periods() {
         let asked = [reflectance(2.0), transmittance(2.0), Quantity::Absorbed(0)];
         let tallied = tallies(&scene, &asked.clone().map(|quantity| (quantity, Orders::ALL)), PHOTONS, 91);
         for (i, quantity) in asked.into_iter().enumerate() {
-            let by_paths = paths(&scene, quantity, Orders::ALL, 1 << 16, 92)[0];
+            let by_paths = paths(&scene, quantity, Orders::ALL, 1 << 14, 92)[0];
             verdict::agree(&format!("{which}, flux {i}"), &tallied[i][0], &by_paths, 0.06, 92);
         }
         let probes = [DVec3::new(1.0, 1.0, 0.5), DVec3::new(3.0, 5.0, 1.5)];

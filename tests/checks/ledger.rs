@@ -215,6 +215,11 @@ pub fn layers_are_those_of_paths(
     layers_of_the_scene_are_those_of_paths(&room.scene(), indirect, settings, emitted, seed);
 }
 
+/// What paths find in a scene: the reference of all ways to read it.
+pub fn reference(scene: &Scene, seed: u64) -> Sheet {
+    by_paths(scene, 400 * 640, seed)
+}
+
 /// The same of a scene that is such a room in size and light.
 pub fn layers_of_the_scene_are_those_of_paths(
     scene: &Scene,
@@ -223,7 +228,17 @@ pub fn layers_of_the_scene_are_those_of_paths(
     emitted: u64,
     seed: u64,
 ) {
-    let paths = by_paths(scene, 400 * 640, seed);
+    layers_are_those_of_the_reference((scene, &reference(scene, seed)), indirect, settings, emitted, seed);
+}
+
+/// The same beside a reference that several ways to read share.
+pub fn layers_are_those_of_the_reference(
+    (scene, paths): (&Scene, &Sheet),
+    indirect: Indirect,
+    settings: &Settings,
+    emitted: u64,
+    seed: u64,
+) {
     let maps = layers_of_maps(scene, settings, emitted, indirect, seed);
     let names = Layer::ALL.map(Layer::name).into_iter().chain(["total"]);
     for (i, name) in names.enumerate() {

@@ -102,7 +102,9 @@ fn photons_and_paths_agree_on_a_box_beside_the_light() {
     ];
     for (name, light) in lights().into_iter().chain(suns()) {
         for (i, shape) in boxes.clone().into_iter().enumerate() {
-            photons_and_paths_cross_a_box_alike(&format!("{name}, box {i}"), light.clone(), shape, MANY);
+            // A portal is a small part of what paths look at.
+            let paths = if name.contains("portal") { MANY } else { MANY / 2 };
+            photons_and_paths_cross_a_box_alike(&format!("{name}, box {i}"), light.clone(), shape, paths);
         }
     }
 }

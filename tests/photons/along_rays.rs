@@ -408,7 +408,7 @@ fn slabs_along_their_normal_know_no_radius() {
             along.of_nearest(NonZeroUsize::new(k).unwrap())
         };
         let estimators = [4, 30].map(of);
-        let measured = crate::checks::beams::means_by_maps(&scene, (4000, 150), 14, &estimators);
+        let measured = crate::checks::beams::means_by_maps(&scene, (4000, 100), 14, &estimators);
         for (estimator, moments) in estimators.iter().zip(&measured) {
             let what = format!("{how:?}, {}", estimator.name());
             verdict::agrees(&what, moments, (expected, 1e-8), 0.13 * expected, 14);

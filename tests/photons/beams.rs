@@ -396,18 +396,19 @@ fn radiance_across_beams_is_that_of_paths() {
         })
         .unwrap();
         // What passes through a density is tracked once a map: a random product, which one map in two hundred hardly averages.
-        let promise = if name == "even" { 0.3 } else { 0.5 };
+        let (promise, maps, histories) =
+            if name == "even" { (0.3, 200, 1 << 19) } else { (0.5, 150, 1 << 18) };
         let sampled = across(Kernel::Epanechnikov, 0.15).treated(Treatment::Clipped);
         let mut estimators = vec![sampled];
         if name == "varying in colour" {
             estimators.push(sampled.of_length(BeamLength::Whole));
         }
         let of_each = |estimator: &Estimator| {
-            by_maps(&scene, (4000, 200), 6, std::slice::from_ref(estimator)).remove(0)
+            by_maps(&scene, (4000, maps), 6, std::slice::from_ref(estimator)).remove(0)
         };
         let measured: Vec<_> = estimators.iter().map(of_each).collect();
         for (view, ray) in views.iter().enumerate() {
-            let reference = paths(&plain, Quantity::Radiance(*ray), orders, 1 << 19, 3);
+            let reference = paths(&plain, Quantity::Radiance(*ray), orders, histories, 3);
             for (estimator, measured) in estimators.iter().zip(&measured) {
                 for channel in 0..3 {
                     let (found, expected) = (&measured[view][channel], &reference[channel]);

@@ -52,10 +52,13 @@ fn lasers_thin_and_dense() {
     let thin = Laser { unit: 1.0, sigma_t: 1e-6, block: [0.0, 1.0, 2.0] };
     let dense = Laser { unit: 1e-6, sigma_t: 1e6, block: [-5e5, 5e5, 5e5] };
     assert!((dense.exact() / endless.exact() - 1e12).abs() < 1e3);
-    for (what, laser, promise) in [("endless", endless, 0.04), ("thin", thin, 0.04), ("dense", dense, 0.04)] {
+    // Forced collisions spread little.
+    for (what, laser, counts) in
+        [("endless", endless, (15_000, 100)), ("thin", thin, (4000, 64)), ("dense", dense, (15_000, 100))]
+    {
         let expected = laser.exact();
-        let found = laser.read(0.0, (40_000, 100), 2);
-        verdict::agrees(what, &found, (expected, 1e-6 * expected), promise * expected, 2);
+        let found = laser.read(0.0, counts, 2);
+        verdict::agrees(what, &found, (expected, 1e-6 * expected), 0.04 * expected, 2);
     }
 }
 
@@ -260,9 +263,9 @@ fn radiance_in_planes_is_that_of_paths() {
             ..SceneParts::default()
         })
         .unwrap();
-        let measured = by_maps(&scene, (5000, 200), 6, &[estimator]).remove(0);
+        let measured = by_maps(&scene, (4000, 200), 6, &[estimator]).remove(0);
         for (view, ray) in views.iter().enumerate() {
-            let reference = paths(&plain, Quantity::Radiance(*ray), orders, 1 << 19, 3);
+            let reference = paths(&plain, Quantity::Radiance(*ray), orders, 1 << 17, 3);
             for channel in 0..3 {
                 let (found, expected) = (&measured[view][channel], &reference[channel]);
                 let what = format!("{name}, view {view}, channel {channel}");

@@ -50,7 +50,7 @@ fn radiance_of_a_slab_knows_no_radius() {
         of_beams(0.2, BeamBlur::OneD).of_length(BeamLength::Whole),
         of_points(Kernel::Uniform, 0.4).ending(RayEnds::Cut),
     ];
-    let measured = means_by_maps(&scene, (2500, 200), 53, &specimens);
+    let measured = means_by_maps(&scene, (1200, 100), 53, &specimens);
     verdict::agrees("long", &measured[0], (0.094_904_494, 1e-8), 0.06 * 0.094_904_494, 53);
     verdict::rejects("cut", &measured[1], 0.094_904_494, 53);
 }

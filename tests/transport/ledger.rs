@@ -2,8 +2,9 @@
 
 use crate::checks::ledger::{
     Room, a_clear_room_keeps_its_ledger, a_foggy_room_keeps_its_ledger,
-    a_foggy_room_keeps_its_ledger_when_gathered, by_paths, layers_are_those_of_paths, layers_of_maps,
-    layers_of_the_scene_are_those_of_paths, mirror, settings, what_is_absent_is_not_asked,
+    a_foggy_room_keeps_its_ledger_when_gathered, by_paths, layers_are_those_of_paths,
+    layers_are_those_of_the_reference, layers_of_maps, layers_of_the_scene_are_those_of_paths, mirror,
+    reference, settings, what_is_absent_is_not_asked,
 };
 use crate::support::scenes::{homogeneous, lambertian, rectangle};
 use crate::support::verdict;
@@ -43,8 +44,10 @@ fn in_color_and_forward() {
         has_glass: false,
         has_water: false,
     };
-    layers_are_those_of_paths(&room, Indirect::Seen, &settings(1), 4000, 3);
-    layers_are_those_of_paths(&room, Indirect::Gathered, &settings(4), 4000, 4);
+    let scene = room.scene();
+    let paths = reference(&scene, 3);
+    layers_are_those_of_the_reference((&scene, &paths), Indirect::Seen, &settings(1), 4000, 3);
+    layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings(4), 4000, 4);
 }
 
 /// Light through a ball of glass, which focuses it on the floor; seen through the ball too.
@@ -59,8 +62,10 @@ fn with_glass() {
         has_glass: true,
         has_water: false,
     };
-    layers_are_those_of_paths(&room, Indirect::Seen, &settings(1), 8000, 6);
-    layers_are_those_of_paths(&room, Indirect::Gathered, &settings(4), 8000, 7);
+    let scene = room.scene();
+    let paths = reference(&scene, 6);
+    layers_are_those_of_the_reference((&scene, &paths), Indirect::Seen, &settings(1), 8000, 6);
+    layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings(4), 8000, 7);
 }
 
 /// Walls above water and a floor below it light each other: rays of a gathering carry radiance across the level, scaled
@@ -94,11 +99,13 @@ fn gathered_beside_rays_that_are_read_at_once() {
     // Wide enough that no few photons next to the eye make the spread.
     let radius = Positive::new("the radius", 0.2).unwrap();
     let standard = settings(4);
+    let scene = room.scene();
+    let paths = reference(&scene, 41);
     for (volume, seed) in
         [(standard.volume.along_rays(radius), 41), (standard.volume.along_beams(radius), 42)]
     {
         let settings = Settings { volume, ..standard };
-        layers_are_those_of_paths(&room, Indirect::Gathered, &settings, 4000, seed);
+        layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings, 4000, seed);
     }
 }
 

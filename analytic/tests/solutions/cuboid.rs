@@ -18,7 +18,8 @@ fn duct_of_crosbie_and_schrenker() {
         let (tau, printed) = (number(&row, "tau"), number(&row, "source_function"));
         // Ours is of radiance 1/pi.
         let of = |duct: &Cuboid| duct.fluence([tau, 0.5, 0.0]).unwrap();
-        let (value, error) = (0.25 * of(&duct).value, 0.25 * of(&duct).error);
+        let found = of(&duct);
+        let (value, error) = (0.25 * found.value, 0.25 * found.error);
         let units = if OFF.contains(&tau) { 2.5 } else { 0.5 };
         assert!((value - printed).abs() <= units * 1e-4 + error, "{row:?}: {value} {error:e}");
         assert!(error < 1e-5, "{row:?}: {error:e}");

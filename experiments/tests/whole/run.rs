@@ -11,27 +11,49 @@ pub fn run(program: &str, photons: &str, threads: &str, out: &Path) -> String {
     String::from_utf8(assert.get_output().stdout.clone()).unwrap()
 }
 
-/// Runs a command on one thread and on two, which give the same results; the folder of the first.
-pub fn same_on_threads(program: &str, photons: &str, folder: &Path) -> PathBuf {
-    let (one, two) = (folder.join("one"), folder.join("two"));
-    let printed = run(program, photons, "1", &one);
+/// What may depend on nothing but the settings.
+const RESULTS: [&str; 5] = ["results.csv", "predictions.csv", "claims.csv", "headlines.csv", "numbers.tex"];
+
+/// Runs a command on one thread; loses every fourth cell of each group, and all that was concluded; and runs it on two, which give the
+/// same cells and results. The folder.
+pub fn same_on_threads_and_after_a_loss(program: &str, photons: &str, folder: &Path) -> PathBuf {
+    let out = folder.join("out");
+    let printed = run(program, photons, "1", &out);
     assert!(printed.contains("claims:") && printed.contains("report.html"), "{printed}");
-    run(program, photons, "2", &two);
-    for file in ["results.csv", "predictions.csv", "claims.csv", "headlines.csv", "numbers.tex"] {
-        let read = |folder: &Path| std::fs::read(folder.join(file)).unwrap();
-        assert!(read(&one) == read(&two), "{file} depends on the threads");
+    let read = |file: &str| std::fs::read(out.join(file)).unwrap();
+    let before = RESULTS.map(read);
+    let groups = lose(&out.join("cells"));
+    assert!(groups > 0);
+    for file in RESULTS.into_iter().filter(|file| *file != "predictions.csv") {
+        std::fs::remove_file(out.join(file)).unwrap();
     }
-    one
+    run(program, photons, "2", &out);
+    for (file, before) in RESULTS.into_iter().zip(before) {
+        assert!(before == read(file), "{file} depends on the threads, or on what was lost");
+    }
+    out
 }
 
-/// Cells are lost: only they are measured again, and the results stay.
-pub fn same_after_a_loss(program: &str, photons: &str, one: &Path, lost: &[&str]) {
-    let before = std::fs::read(one.join("results.csv")).unwrap();
-    for cell in lost {
-        std::fs::remove_file(one.join("cells").join(cell)).unwrap();
+/// Removes every fourth cell of each group, the first included; the number of groups.
+fn lose(cells: &Path) -> usize {
+    let folders = std::fs::read_dir(cells).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> = folders
+        .filter(|path| path.is_dir())
+        .flat_map(|folder| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()))
+        .collect();
+    files.sort();
+    let mut groups = std::collections::BTreeMap::new();
+    for file in files {
+        // As albedo0.9-n4000-000003.csv; predictions stay.
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        let Some((group, _)) = name.rsplit_once('-') else { continue };
+        let count: &mut usize = groups.entry(group.to_string()).or_default();
+        if count.is_multiple_of(4) {
+            std::fs::remove_file(&file).unwrap();
+        }
+        *count += 1;
     }
-    run(program, photons, "2", one);
-    assert!(before == std::fs::read(one.join("results.csv")).unwrap());
+    groups.len()
 }
 
 /// The report of a run: number of figures, and nothing that is not a number.
