@@ -13,6 +13,7 @@ use crate::kernel::{Dimension, Kernel};
 use crate::quadrature::GaussLegendre;
 use crate::value::Value;
 use libm::{cosh, exp, expm1, sinh};
+use std::sync::LazyLock;
 
 /// Mean of e^(b.x) over the kernel K_r about the origin, over the value at the centre, as a function of x = |b| r.
 ///
@@ -37,6 +38,9 @@ pub fn exponential_mean(kernel: Kernel, d: Dimension, x: f64) -> Result<Value> {
     Ok(radial_mean(kernel, d, x.abs()))
 }
 
+/// A rule, and a coarser one whose difference from it bounds its error.
+static RULES: LazyLock<[GaussLegendre; 2]> = LazyLock::new(|| [32, 24].map(GaussLegendre::rule));
+
 /// The radial integral by two Gauss rules on panels over which the shell's mean grows by at most e^4.
 fn radial_mean(kernel: Kernel, d: Dimension, x: f64) -> Value {
     let panels = (x / 4.0).ceil().max(1.0);
@@ -44,7 +48,7 @@ fn radial_mean(kernel: Kernel, d: Dimension, x: f64) -> Value {
     let integrand = |u: f64| {
         kernel.density(d, u) * d.sphere_area() * d.power(u) / u.max(f64::MIN_POSITIVE) * shell_mean(d, x * u)
     };
-    let (fine, coarse) = (GaussLegendre::rule(32), GaussLegendre::rule(24));
+    let [fine, coarse] = &*RULES;
     let (mut value, mut difference, mut i) = (0.0, 0.0, 0.0);
     while i < panels {
         let best = fine.integrate(i * step, (i + 1.0) * step, integrand);

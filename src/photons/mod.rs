@@ -26,25 +26,42 @@ pub use tallies::Scores;
 pub(crate) use tallies::score_bytes;
 pub use tree::PhotonTree;
 
-/// Memory that a photon of a large map takes at most \[bytes\]: 52 or, on a surface, 64 as its pass stores it; then its columns and
-/// its place in the order, 44 or 56, with the column of 12 that is just put in order.
-const PHOTON_BYTES: f64 = 66.0;
-
-/// What each of the first photons of a map takes beside: small pieces that the allocator keeps when others have taken their place, and
-/// memory that the threads sort in.
-const FIRST: (f64, f64) = (2e6, 52.0);
-
-/// Most memory that so many stored photons take on their way into a map \[bytes\]. Measured: see `tests/cli/memory.rs`.
-pub fn peak_bytes(photons: f64) -> f64 {
-    PHOTON_BYTES * photons + FIRST.1 * photons.min(FIRST.0)
+/// Most memory that stored photons take on their way into a map: bytes as a function of their number. Measured: see
+/// `tests/cli/memory.rs`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeakBytes {
+    /// Of each \[bytes\].
+    each: f64,
+    /// Of each of so many first ones, beside \[bytes\].
+    first: (f64, f64),
 }
 
-/// The part of so many photons that takes a part of their memory, both at most 1.
-pub fn part_in(part: f64, photons: f64) -> f64 {
-    let bytes = part * peak_bytes(photons);
-    let each = PHOTON_BYTES + FIRST.1;
-    let fits = if bytes < each * FIRST.0 { bytes / each } else { (bytes - FIRST.1 * FIRST.0) / PHOTON_BYTES };
-    if photons > 0.0 { fits / photons } else { part }
+impl PeakBytes {
+    /// Of the first map of a process. A photon takes 52 or, on a surface, 64 as its pass stores it; then its columns and its place in
+    /// the order, 44 or 56, with the column of 12 that is just put in order. Beside, the allocator keeps small pieces of the pass, and
+    /// threads sort in memory of their own.
+    pub const FIRST_MAP: PeakBytes = PeakBytes { each: 66.0, first: (5e5, 60.0) };
+
+    /// Of maps one after the other: what the allocator keeps of the last one, the next one fits in for the smaller part.
+    pub const MAPS: PeakBytes = PeakBytes { each: 112.0, first: (0.0, 0.0) };
+
+    /// Of so many maps.
+    pub fn of_maps(maps: u64) -> Self {
+        if maps > 1 { Self::MAPS } else { Self::FIRST_MAP }
+    }
+
+    /// Of so many photons \[bytes\].
+    pub fn of(self, photons: f64) -> f64 {
+        self.each * photons + self.first.1 * photons.min(self.first.0)
+    }
+
+    /// The part of so many photons that takes a part of their memory, both at most 1.
+    pub fn part_in(self, part: f64, photons: f64) -> f64 {
+        let (bytes, (count, beside)) = (part * self.of(photons), self.first);
+        let among_first = bytes / (self.each + beside);
+        let fits = if among_first < count { among_first } else { (bytes - beside * count) / self.each };
+        if photons > 0.0 { fits / photons } else { part }
+    }
 }
 
 /// Time that a stored photon takes on its way into the tree, of one processor \[s\]: measured with 2.8 x 10^6 of them. It is for
@@ -57,14 +74,16 @@ mod tests {
 
     #[test]
     fn parts_take_their_part_of_the_memory() {
-        for photons in [1.0, 1e5, 2e6, 3e6, 1e9] {
-            for part in [1e-3, 0.3, 0.9, 1.0] {
-                let fits = part_in(part, photons);
-                assert!(fits <= part * (1.0 + 1e-12), "{photons} {part}: {fits}");
-                let error = peak_bytes(fits * photons) / (part * peak_bytes(photons)) - 1.0;
-                assert!(error.abs() < 1e-12, "{photons} {part}: {error}");
+        for peak in [PeakBytes::FIRST_MAP, PeakBytes::MAPS] {
+            for photons in [1.0, 1e5, 5e5, 3e6, 1e9] {
+                for part in [1e-3, 0.3, 0.9, 1.0] {
+                    let fits = peak.part_in(part, photons);
+                    assert!(fits <= part * (1.0 + 1e-12), "{photons} {part}: {fits}");
+                    let error = peak.of(fits * photons) / (part * peak.of(photons)) - 1.0;
+                    assert!(error.abs() < 1e-12, "{photons} {part}: {error}");
+                }
             }
+            assert_eq!((peak.part_in(0.5, 0.0), peak.of(0.0)), (0.5, 0.0));
         }
-        assert_eq!((part_in(0.5, 0.0), peak_bytes(0.0)), (0.5, 0.0));
     }
 }

@@ -14,7 +14,7 @@ use crate::geometry::Shape;
 use crate::photons::beams;
 use crate::photons::planes::{self, check_planes};
 use crate::photons::{
-    BUILD_SECONDS, Emitter, Histories, Part, Photon, Run, Scores, peak_bytes, periodic, score_bytes,
+    BUILD_SECONDS, Emitter, Histories, Part, PeakBytes, Photon, Run, Scores, periodic, score_bytes,
 };
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
@@ -152,17 +152,18 @@ pub fn by_given_photons(
     Ok(result)
 }
 
-/// Most memory that [`by_given_photons`] takes for a map of so many photons \[bytes\].
+/// Most memory that [`by_given_photons`] takes for a map of so many photons, of settings that say how many maps \[bytes\].
 ///
 /// # Errors
 /// those of [`by_given_photons`]
 pub fn given_bytes(scene: &Scene, settings: &PhotonSettings, count: u64) -> Result<f64> {
     let (sensors, margin) = prepared_for_maps(scene, settings)?;
     let all = count as f64 * around(scene, margin);
+    let peak = PeakBytes::of_maps(settings.maps);
     let bytes = match RadianceMaps::of([&settings.estimator]).ranges(&sensors).points.len() {
-        0 | 1 => peak_bytes(all),
+        0 | 1 => peak.of(all),
         // All of them may be in each range.
-        maps => size_of::<Photon>() as f64 * all + maps as f64 * peak_bytes(all),
+        ranges => size_of::<Photon>() as f64 * all + ranges as f64 * peak.of(all),
     };
     Ok(bytes + row_bytes(scene))
 }
@@ -315,10 +316,11 @@ pub(super) fn forecast_of(
     let [met_beams, flights] = [pass.met_beams, copied_beams].map(a_history);
     let [met_planes, planes] = [pass.met_planes, copied_planes].map(a_history);
     // Where several ranges of orders have a map each, the photons of all stay until the last one.
+    let peak = PeakBytes::of_maps(maps.saturating_mul(passes));
     let [met_a_pass, copied_a_pass] = [met, copied].map(|n| n / passes as f64);
     let of_points = match ranges.points.len() {
-        0 | 1 => peak_bytes(met_a_pass),
-        _ => size_of::<Photon>() as f64 * met_a_pass + peak_bytes(copied_a_pass),
+        0 | 1 => peak.of(met_a_pass),
+        _ => size_of::<Photon>() as f64 * met_a_pass + peak.of(copied_a_pass),
     };
     let copies = |met: u64, ranges: &[Orders]| if met > 0 { ranges.len().max(1) as f64 } else { 1.0 };
     let of_beams = met_beams * copies(pass.met_beams, &ranges.beams);

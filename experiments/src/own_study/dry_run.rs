@@ -10,7 +10,7 @@ use crate::harness::{CellId, Settings, duration};
 use cpu_time::ProcessTime;
 use turbid::memory::{free, in_words};
 use turbid::photons::beams::{self, BeamMap};
-use turbid::photons::{PhotonMap, peak_bytes};
+use turbid::photons::{PeakBytes, PhotonMap};
 use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::transport::NoProgress;
 
@@ -91,7 +91,7 @@ fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> an
             let more = if is_fixed(estimator) { photons as f64 / few as f64 } else { 1.0 };
             reading += start.elapsed().as_secs_f64() * more;
         }
-        return Ok((filling + reading, peak_bytes(stored) + beams::PEAK_BYTES * beams));
+        return Ok((filling + reading, PeakBytes::MAPS.of(stored) + beams::PEAK_BYTES * beams));
     }
     let reach = reach(&point.estimators);
     let replicate = CellId::of("dry-run", 0).stream(words::NAME);

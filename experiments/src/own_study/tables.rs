@@ -6,7 +6,7 @@ use crate::harness::Estimate;
 use crate::prediction::Prediction;
 use std::collections::HashMap;
 use turbid::estimators::Gather;
-use turbid::photons::peak_bytes;
+use turbid::photons::PeakBytes;
 use turbid::stats::Moments;
 
 /// A table as text, in CSV.
@@ -212,7 +212,7 @@ pub fn costs(data: &[Data]) -> anyhow::Result<String> {
         for setting in &data.settings {
             let mut row = parameters(data, setting);
             let stored = data.stored.iter().find(|(photons, _)| *photons == setting.photons);
-            let bytes = stored.map_or(f64::NAN, |(_, stored)| peak_bytes(*stored));
+            let bytes = stored.map_or(f64::NAN, |(_, stored)| PeakBytes::MAPS.of(*stored));
             row.push("photon map".to_string());
             row.extend(setting.seconds.iter().map(|seconds| cell(seconds.mean())));
             row.extend([cell(bytes), String::new()]);

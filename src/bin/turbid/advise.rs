@@ -12,7 +12,7 @@ use anyhow::Context;
 use clap::{ArgMatches, ValueEnum};
 use std::time::Instant;
 use turbid::output::{Format, print, write_aligned, write_csv, write_json};
-use turbid::photons::part_in;
+use turbid::photons::PeakBytes;
 use turbid::scene::{Quantity, Scene};
 use turbid::sensor::{Advice, PathAdvice, Pilot, PilotSettings, path_advice};
 
@@ -134,7 +134,12 @@ impl Advise {
             &format!("a pilot map of {:.2e} photons", forecast.stored),
             forecast.bytes,
             0.0,
-            |part| format!("--pilot {}", rounded_down(self.pilot as f64 * part_in(part, forecast.stored))),
+            |part| {
+                format!(
+                    "--pilot {}",
+                    rounded_down(self.pilot as f64 * PeakBytes::of_maps(MAPS).part_in(part, forecast.stored))
+                )
+            },
         )?;
         let bar = Bar::new(settings.photons.saturating_mul(MAPS));
         let pilot = Pilot::run(scene, &settings, &bar);

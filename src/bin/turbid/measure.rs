@@ -18,7 +18,7 @@ use turbid::math::Positive;
 use turbid::output::{
     RunInfo, check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
 };
-use turbid::photons::{Ledger, Photon, part_in};
+use turbid::photons::{Ledger, PeakBytes, Photon};
 use turbid::scene::{Binned, Orders, Quantity, Scene, Sensor, Space};
 use turbid::sensor::{
     Measurement, NoError, PathSettings, PhotonReadings, PhotonSettings, TallySettings,
@@ -451,7 +451,10 @@ impl Measure {
         let most = given.most();
         let bytes = given_bytes(scene, &settings, most).with_context(|| self.source.name())?;
         self.memory.check(&format!("a map of {most} photons"), bytes, 0.0, |part| {
-            format!("files of at most {} photons", rounded_down(most as f64 * part_in(part, most as f64)))
+            format!(
+                "files of at most {} photons",
+                rounded_down(most as f64 * PeakBytes::of_maps(files).part_in(part, most as f64))
+            )
         })?;
         let mut has_uncollided = false;
         let see = |photons: &[Photon]| has_uncollided |= photons.iter().any(|photon| photon.order == 0);
@@ -504,7 +507,8 @@ impl Measure {
             forecast.bytes,
             0.0,
             |part| {
-                let part = part_in(part, forecast.stored / self.passes as f64);
+                let peak = PeakBytes::of_maps(settings.maps.saturating_mul(self.passes));
+                let part = peak.part_in(part, forecast.stored / self.passes as f64);
                 let fewer = rounded_down(self.photons as f64 * part);
                 let passes = passes_that_fit(self.passes, part);
                 match self.radius {

@@ -165,9 +165,9 @@ impl Photons {
         let total: f64 = stored.iter().sum();
         let passes = held.passes as f64;
         let a_pass = Forecast { stored: stored.map(|photons| photons / passes), ..forecast };
-        let bytes = fixed + a_pass.bytes() + beside * total / passes;
+        let bytes = fixed + a_pass.bytes(held.runs) + beside * total / passes;
         memory.check(&format!("{total:.2e} photons in maps"), bytes, fixed, |part| {
-            let part = a_pass.part_in(part);
+            let part = a_pass.part_in(part, held.runs);
             let asked =
                 [("global", maps.global, 0), ("volume", maps.volume, 1), ("caustic", maps.caustic, 2)];
             let needed = asked.iter().filter(|(_, _, map)| stored[*map] > 0.0);
@@ -222,13 +222,15 @@ impl Photons {
 pub struct Held {
     /// One part of so many.
     pub passes: u64,
+    /// So many times, one after the other, with all repetitions.
+    pub runs: u64,
     /// Whether the radius is fixed, so that there may be several.
     pub has_radius: bool,
 }
 
 impl Held {
     /// All of them.
-    pub const ALL: Held = Held { passes: 1, has_radius: false };
+    pub const ALL: Held = Held { passes: 1, runs: 1, has_radius: false };
 }
 
 /// How the maps are read.

@@ -254,7 +254,8 @@ impl Sequence<'_> {
         let importance = stages.time("pilot", || self.photons.importance(self.scene, self.camera, &maps))?;
         let emitted = stages.time("pilot", || {
             let fixed = (self.fixed, 0.0);
-            self.photons.forecast(self.scene, &maps, importance.as_ref(), Held::ALL, self.memory, fixed)
+            let held = Held { runs: u64::MAX, ..Held::ALL };
+            self.photons.forecast(self.scene, &maps, importance.as_ref(), held, self.memory, fixed)
         })?;
         let mut shared = Shared { maps, importance, emitted, first: self.usual };
         shared.first.volume.is_progressive = true;

@@ -253,7 +253,8 @@ impl Render {
                 let importance = importance.as_ref();
                 let fixed = (self.film_bytes(&camera), 0.0);
                 let emitted = stages.time("pilot", || {
-                    let held = Held { passes: self.passes, has_radius: self.readout.has_radius() };
+                    let runs = self.passes.saturating_mul(self.maps());
+                    let held = Held { passes: self.passes, runs, has_radius: self.readout.has_radius() };
                     self.photons.forecast(&scene, &settings_of_maps, importance, held, &self.memory, fixed)
                 })?;
                 let mut work = Report::default();

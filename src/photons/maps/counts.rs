@@ -5,7 +5,7 @@ use super::settings::{Amount, Emitted, MapSettings, PILOT};
 use crate::error::{Error, Result};
 use crate::photons::importance::Importance;
 use crate::photons::pass::is_diffuse;
-use crate::photons::{BUILD_SECONDS, Pass, Run, beams, check_end, part_in, peak_bytes};
+use crate::photons::{BUILD_SECONDS, Pass, PeakBytes, Run, beams, check_end};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{BLOCK, NoProgress};
@@ -29,17 +29,19 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// Most memory that filling the maps takes, about \[bytes\].
-    pub fn bytes(&self) -> f64 {
+    /// Most memory that filling the maps takes, about, of one run or of several one after the other \[bytes\].
+    pub fn bytes(&self, runs: u64) -> f64 {
+        let peak = PeakBytes::of_maps(runs);
         let [global, volume, caustic] = self.stored;
-        let of_media = if self.has_beams { beams::PEAK_BYTES * volume } else { peak_bytes(volume) };
-        peak_bytes(global) + peak_bytes(caustic) + of_media
+        let of_media = if self.has_beams { beams::PEAK_BYTES * volume } else { peak.of(volume) };
+        peak.of(global) + peak.of(caustic) + of_media
     }
 
     /// The part of the photons that takes a part of that memory: no map takes more than its own.
-    pub fn part_in(&self, part: f64) -> f64 {
+    pub fn part_in(&self, part: f64, runs: u64) -> f64 {
+        let peak = PeakBytes::of_maps(runs);
         let of_points = if self.has_beams { [self.stored[0], 0.0, self.stored[2]] } else { self.stored };
-        of_points.into_iter().map(|photons| part_in(part, photons)).fold(part, f64::min)
+        of_points.into_iter().map(|photons| peak.part_in(part, photons)).fold(part, f64::min)
     }
 }
 

@@ -116,7 +116,7 @@ pub fn fill_by_importance(
 
 /// Fills the maps with the photons of so many histories.
 ///
-/// The same bits on any number of threads. Memory: [`peak_bytes`](super::peak_bytes) at most; what stays is
+/// The same bits on any number of threads. Memory: [`PeakBytes`](super::PeakBytes) at most; what stays is
 /// [`PhotonTree::bytes`](crate::photons::PhotonTree::bytes).
 ///
 /// # Errors
