@@ -138,6 +138,9 @@ impl Photons {
         let (number, count) = small.fold((0, 0), |(number, count), part| (number + 1, count + part.len()));
         if count >= PART {
             let mut one = Photons::with_capacity(count);
+            if parts[first..first + number].iter().any(|part| !part.normals.is_empty()) {
+                one.normals.reserve_exact(count);
+            }
             parts.drain(first..first + number).for_each(|part| one.append(part));
             parts.insert(first, one);
         }

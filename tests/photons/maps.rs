@@ -172,7 +172,8 @@ fn forecasts_come_true() {
         let error = 2.0 * (1.0 / (3750.0 * a_history) + 1.0 / stored).sqrt();
         assert!((stored / expected - 1.0).abs() < 5.0 * error, "{stored} of {expected}, error {error}");
     }
-    assert!(ahead.seconds > 0.0 && ahead.bytes() > 100.0 * ahead.stored.iter().sum::<f64>());
+    let each = [1, 2].map(|runs| ahead.bytes(runs) / ahead.stored.iter().sum::<f64>());
+    assert!(ahead.seconds > 0.0 && (66.0..127.0).contains(&each[0]) && (111.0..113.0).contains(&each[1]));
 }
 
 #[test]

@@ -1,12 +1,23 @@
 //! What a tree holds of photons beside their places, by number while their order is sought, then by place.
 
 use super::block::{BLOCK, ROW, Row};
-use super::order::Entry;
 use super::units::Units;
 use crate::photons::{Flags, Photons};
 use glam::Vec3;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use wide::f32x8;
+
+/// A photon on its way into the tree: its position in the tree's units, and its number.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Entry {
+    pub(super) position: [f32; 3],
+    pub(super) index: u32,
+}
+
+impl Entry {
+    /// An entry of no photon, to fill memory with.
+    pub(super) const NONE: Entry = Entry { position: [0.0; 3], index: 0 };
+}
 
 /// Columns of photons, numbered through.
 #[derive(Debug, Default)]

@@ -17,9 +17,8 @@ use super::{Flags, Photon, Photons};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
 use block::BLOCK;
-use columns::{Columns, rows};
+use columns::{Columns, Entry, rows};
 use glam::{DVec3, Vec3};
-use order::Entry;
 use wide::f32x8;
 
 pub use block::ROW;

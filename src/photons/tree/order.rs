@@ -1,7 +1,7 @@
 //! The kd order: photons that are neighbours in space become neighbours in memory.
 
 use super::block::BLOCK;
-use super::columns::Columns;
+use super::columns::{Columns, Entry};
 use crate::transport::Progress;
 use std::cmp::Ordering;
 use wide::f32x4;
@@ -12,18 +12,6 @@ const SERIAL: usize = 1 << 14;
 /// Ranges shorter than this are ordered with memory to move entries to, half as much again as they take; longer ones in place, a
 /// little slower, until all threads together need an eighth of that for the whole. Nor on this.
 const MOVED: usize = 1 << 20;
-
-/// A photon on its way into the tree: its position in the tree's units, and where its record is.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Entry {
-    pub(super) position: [f32; 3],
-    pub(super) index: u32,
-}
-
-impl Entry {
-    /// An entry of no photon, to fill memory with.
-    pub(super) const NONE: Entry = Entry { position: [0.0; 3], index: 0 };
-}
 
 /// Puts entries in kd order: every range of more than one block is split across the widest axis of its box,
 /// at the largest power-of-two number of blocks below its own, nearer photons first.
