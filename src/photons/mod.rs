@@ -43,7 +43,7 @@ impl PeakBytes {
     pub const FIRST_MAP: PeakBytes = PeakBytes { each: 66.0, first: (5e5, 60.0) };
 
     /// Of maps one after the other: what the allocator keeps of the last one, the next one fits in for the smaller part.
-    pub const MAPS: PeakBytes = PeakBytes { each: 112.0, first: (0.0, 0.0) };
+    pub const MAPS: PeakBytes = PeakBytes { each: 116.0, first: (0.0, 0.0) };
 
     /// Of so many maps.
     pub fn of_maps(maps: u64) -> Self {

@@ -131,7 +131,7 @@ impl Photons {
 
     /// Adds parts behind parts; each photon is copied once at most.
     pub(super) fn join(parts: &mut Vec<Photons>, others: Vec<Photons>) {
-        parts.extend(others);
+        parts.extend(others.into_iter().filter(|part| !part.is_empty()));
         let is_small = |part: &Photons| part.len() < PART;
         let first = parts.iter().position(is_small).unwrap_or(parts.len());
         let small = parts[first..].iter().take_while(|part| is_small(part));
@@ -159,5 +159,49 @@ impl FromIterator<Photon> for Photons {
 impl From<Vec<Photon>> for Photons {
     fn from(photons: Vec<Photon>) -> Self {
         photons.into_iter().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn photon(number: usize, is_on_surface: bool) -> Photon {
+        let x = number as f32;
+        Photon {
+            position: DVec3::splat(number as f64),
+            dir: Vec3::X * x,
+            normal: if is_on_surface { Vec3::Z } else { Vec3::ZERO },
+            power: Vec3::Y * x,
+            order: number as u16,
+            flags: if is_on_surface { Flags::DIFFUSE } else { Flags::MEDIUM },
+        }
+    }
+
+    #[test]
+    fn photons_come_back_as_they_went_in() {
+        for is_on_surface in [|_| false, |_| true, |n| n > 3, |n: usize| n.is_multiple_of(3)] {
+            let photons: Vec<Photon> = (0..10).map(|n| photon(n, is_on_surface(n))).collect();
+            let mut columns = Photons::from(photons.clone());
+            assert!(columns.iter().eq(photons.iter().copied()) && columns.len() == 10);
+            assert_eq!(columns.normals.is_empty(), !photons.iter().any(|p| p.normal != Vec3::ZERO));
+            let is_kept = |p: &Photon| p.order % 4 != 1;
+            columns.retain(is_kept);
+            assert!(columns.iter().eq(photons.into_iter().filter(is_kept)));
+        }
+    }
+
+    /// Whoever has normals; and however small parts come, those that are joined are large.
+    #[test]
+    fn parts_keep_their_order() {
+        let sizes = [10, PART - 20, 5, 30, PART, 7, 8, PART / 2, PART / 2];
+        let (mut parts, mut all) = (Vec::new(), Vec::new());
+        for (which, size) in sizes.into_iter().enumerate() {
+            let part: Vec<Photon> = (0..size).map(|n| photon(all.len() + n, which % 3 == 1)).collect();
+            all.extend_from_slice(&part);
+            Photons::join(&mut parts, vec![part.into(), Photons::default()]);
+        }
+        assert!(parts.iter().flat_map(Photons::iter).eq(all));
+        assert_eq!(parts.iter().filter(|part| part.len() < PART).count(), 0);
     }
 }

@@ -64,6 +64,7 @@ fn memory_is_as_said() {
         "--maps",
         "1",
     ];
+    let maps = [&slab[..slab.len() - 4], &["--photons", "1.2e6", "--maps", "4"]].concat();
     let small = ["--width", "8", "--global", "emit:4e5", "--volume", "emit:4e5", "--caustic", "1000"];
     let fogbox =
         [&["render", "fogbox", "-o", &exr, "--samples", "1", "--gather-rays", "0"][..], &small].concat();
@@ -80,6 +81,7 @@ fn memory_is_as_said() {
     let bins = ["measure", text(&many), "--with", "light", "--photons", "4e4", "--threads", "2"];
     for (name, arguments) in [
         ("measure", &slab[..]),
+        ("maps", &maps),
         ("render", &fogbox),
         ("map", &drawn),
         ("large picture", &large),
