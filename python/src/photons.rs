@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use turbid::integrators::Layer;
 use turbid::memory;
-use turbid::photons::{Emitter, Flags, Histories, Photon, Run, Storage};
+use turbid::photons::{Emitter, Flags, Histories, Photon, Photons, Run, Storage};
 use turbid::scene::Scene;
 use turbid::transport::{NoProgress, Progress};
 
@@ -76,8 +76,8 @@ fn write(photon: &Photon, is_in_medium: bool, record: &mut [u8]) {
     end[3] = class(photon, is_in_medium);
 }
 
-/// Photons of all histories, block by block: those in media and those on surfaces.
-type Kept = [Vec<Vec<Photon>>; 2];
+/// Photons of all histories, part by part: those in media and those on surfaces.
+type Kept = [Vec<Photons>; 2];
 
 fn shoot(
     scene: &Scene,
@@ -121,14 +121,14 @@ pub fn photons<'py>(
     let kept = work::run(py, threads, progress.as_ref(), move |watch| {
         shoot(&scene, (emitted, seed), (at, orders), watch).map_err(|error| given.named(error))
     })?;
-    let count: usize = kept.iter().flatten().map(Vec::len).sum();
+    let count: usize = kept.iter().flatten().map(Photons::len).sum();
     PyByteArray::new_with(py, RECORD * count, |bytes| {
         let mut records = bytes.chunks_exact_mut(RECORD);
-        for (blocks, is_in_medium) in kept.into_iter().zip([true, false]) {
-            // Block by block, so that what is copied is given back.
-            for block in blocks {
-                for (photon, record) in block.iter().zip(records.by_ref().take(block.len())) {
-                    write(photon, is_in_medium, record);
+        for (parts, is_in_medium) in kept.into_iter().zip([true, false]) {
+            // Part by part, so that what is copied is given back.
+            for part in parts {
+                for (photon, record) in part.iter().zip(records.by_ref().take(part.len())) {
+                    write(&photon, is_in_medium, record);
                 }
             }
         }

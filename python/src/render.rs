@@ -97,7 +97,7 @@ impl Request {
         let stored: f64 = forecast.stored.iter().sum();
         memory::check(
             || format!("{stored:.2e} photons in maps"),
-            forecast.bytes() + self.film_bytes(camera),
+            forecast.bytes(self.maps) + self.film_bytes(camera),
         )?;
         Ok(fill_counted_by_importance(scene, &settings, forecast.emitted, importance.as_ref(), watch)?)
     }
