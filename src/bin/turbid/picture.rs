@@ -222,7 +222,7 @@ impl Photons {
 pub struct Held {
     /// One part of so many.
     pub passes: u64,
-    /// So many times, one after the other, with all repetitions.
+    /// Maps of each kind that are filled one after the other, over all passes and repetitions.
     pub runs: u64,
     /// Whether the radius is fixed, so that there may be several.
     pub has_radius: bool,

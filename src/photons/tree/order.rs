@@ -9,8 +9,9 @@ use wide::f32x4;
 /// Ranges shorter than this are ordered by one thread; the order itself does not depend on it.
 const SERIAL: usize = 1 << 14;
 
-/// Ranges shorter than this are ordered with memory to move entries to, half as much again as they take; longer ones in place, a
-/// little slower, until all threads together need an eighth of that for the whole. Nor on this.
+/// Ranges of at most so many entries are ordered with memory to move them to, one and a half times their own. Longer ranges are split in
+/// place, a little slower, unless that memory for all threads together is an eighth of what the whole would need. The order does not
+/// depend on this either.
 const MOVED: usize = 1 << 20;
 
 /// Puts entries in kd order: every range of more than one block is split across the widest axis of its box,
@@ -258,4 +259,55 @@ fn flags_key(flags: crate::photons::Flags) -> u8 {
         .enumerate()
         .map(|(bit, flag)| u8::from(flags.has(flag)) << bit)
         .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::photons::Photons;
+    use crate::photons::tree::units::Units;
+    use crate::photons::{Flags, Photon};
+    use crate::rng::{Purpose, Stream};
+    use glam::{DVec3, Vec3};
+    use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+    struct Counted(AtomicU64);
+
+    impl Progress for Counted {
+        fn advance(&self, steps: u64) {
+            self.0.fetch_add(steps, Relaxed);
+        }
+    }
+
+    /// However much is split in place, in one thread or many, and where half of all coordinates tie.
+    #[test]
+    fn the_order_does_not_depend_on_the_memory() {
+        for steps in [f64::INFINITY, 8.0] {
+            let mut stream = Stream::new(1, Purpose::Synthetic, 0, 0);
+            let place = |x: f64| if steps.is_finite() && x < 0.5 { (x * steps).floor() / steps } else { x };
+            let photon = |number: u16| Photon {
+                position: DVec3::from(stream.triple().map(place)),
+                dir: Vec3::Z,
+                normal: Vec3::ZERO,
+                power: Vec3::splat(f32::from(number)),
+                order: number,
+                flags: Flags::MEDIUM,
+            };
+            let photons: Photons = (0..50_000).map(photon).collect();
+            let count = photons.len();
+            let units = Units::of(std::slice::from_ref(&photons)).unwrap();
+            let (entries, columns) = Columns::of(vec![photons], &units);
+            let sorted = |most: usize, parallel: bool| {
+                let (mut entries, progress) = (entries.clone(), Counted(AtomicU64::new(0)));
+                Order { photons: &columns, parallel, progress: &progress }.sort_in_place(&mut entries, most);
+                assert_eq!(progress.0.into_inner(), count as u64, "{most} {parallel}");
+                entries.into_iter().map(|entry| entry.index).collect::<Vec<_>>()
+            };
+            let moved = sorted(count, false);
+            assert!(!moved.is_sorted());
+            for most in [BLOCK, 1000, SERIAL, 40_000] {
+                assert!([false, true].into_iter().all(|parallel| sorted(most, parallel) == moved), "{most}");
+            }
+        }
+    }
 }
