@@ -29,6 +29,7 @@ mod point;
 mod ray;
 mod schedule;
 mod surface;
+mod transmitted;
 
 pub use beam::BeamEstimator;
 pub use blur::{BeamBlur, BeamLength};
@@ -43,3 +44,4 @@ pub use point::{Ball, BallSum, Estimate, ball_sum, count_within, for_each_photon
 pub use ray::{RayEstimate, RayEstimator};
 pub use schedule::Codimension;
 pub use surface::{irradiance, irradiance_seen};
+pub use transmitted::Transmitted;

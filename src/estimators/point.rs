@@ -196,8 +196,14 @@ impl LaneSum {
     const ROWS: u32 = 32;
 
     #[inline(always)]
-    fn add(&mut self, weight: f32x8, power: &[f32x8; 3]) {
-        for (lanes, power) in self.lanes.iter_mut().zip(power) {
+    pub(super) fn add(&mut self, weight: f32x8, power: &[f32x8; 3]) {
+        self.add_each([weight; 3], power);
+    }
+
+    /// The same with a weight for each channel.
+    #[inline(always)]
+    pub(super) fn add_each(&mut self, weights: [f32x8; 3], power: &[f32x8; 3]) {
+        for (lanes, (weight, power)) in self.lanes.iter_mut().zip(weights.into_iter().zip(power)) {
             *lanes += weight * *power;
         }
         self.rows += 1;

@@ -1,13 +1,16 @@
 //! Points along a ray: what a medium scatters towards the near end of a ray, from all photons about the ray at once.
 
 use super::boundary::{Beside, Boundary};
-use super::{Directional, Kernel, OwnEnds};
+use super::point::LaneSum;
+use super::{CosinePairs, Directional, Kernel, OwnEnds, Transmitted};
 use crate::Spectrum;
 use crate::math::{Interval, Positive, Ray, cosine_pair};
 use crate::medium::Medium;
-use crate::photons::tree::Radii;
+use crate::photons::tree::{AlongRow, Radii};
 use crate::photons::{Photon, PhotonMap};
+use crate::scene::decay;
 use glam::DVec3;
+use wide::f32x8;
 
 /// How light that a medium scatters along a ray is estimated from the photons about the ray: the beam radiance estimate.
 ///
@@ -50,7 +53,8 @@ impl RayEstimator {
     ///
     /// # Arguments
     /// `ray` looks away from the receiver, so that light travels against it; `span` in the `medium`, and `boundary` what is about
-    /// it; `passed` the part of the light from a distance along the ray \[L\] that reaches the near end
+    /// it; `passed` the part of the light from a distance along the ray \[L\] that reaches the near end. Where it has a closed form
+    /// ([`Transmitted::decay`]) photons far from all faces and bodies are summed by rows, in single precision: within some 10^-6
     ///
     /// # Returns
     /// not a number in a periodic cell that holds no copies as far as the radius, or of a stretch without end there
@@ -64,18 +68,35 @@ impl RayEstimator {
         (ray, span): (&Ray, Interval),
         medium: &Medium,
         boundary: &Boundary<'_>,
-        passed: impl Fn(f64) -> Spectrum,
+        passed: impl Transmitted,
     ) -> RayEstimate {
         let radius = self.radius.get();
-        self.summed(
+        let mut rows = passed.decay().and_then(|decay| Rows::new(self, map, (ray, medium), decay));
+        let rest = self.summed(
             map,
             (ray, span),
             (medium, boundary),
-            |_, foot| passed(foot),
-            |visit| {
-                map.along(ray, span, radius, |photon, foot, squared| visit(photon, radius, foot, squared))
+            |_, foot| passed.from(foot),
+            |beside, visit| {
+                let mut visit = |photon, foot, squared| visit(photon, radius, foot, squared);
+                if let Some(rows) = &mut rows {
+                    let parts = beside.clear_parts(span, radius, self.is_clipped);
+                    let way = (ray, span, radius);
+                    if map.along_by_rows(way, &parts, &mut visit, |row| rows.add(&row)) {
+                        return true;
+                    }
+                }
+                map.along(ray, span, radius, visit)
             },
-        )
+        );
+        match rows {
+            Some(rows) => RayEstimate {
+                value: rest.value + rows.sum.total() * rows.before * self.scale(map, radius),
+                found: rest.found + rows.found,
+                ..rest
+            },
+            None => rest,
+        }
     }
 
     /// The same with a radius for each photon in place of one for all, none of them above it: with r(y) that of a photon at y its mean
@@ -101,7 +122,7 @@ impl RayEstimator {
             (ray, span),
             (medium, boundary),
             |_, foot| passed(foot),
-            |visit| map.along_by_radii(ray, span, radii, visit),
+            |_, visit| map.along_by_radii(ray, span, radii, visit),
         )
     }
 
@@ -117,7 +138,7 @@ impl RayEstimator {
         let of = (medium, &Boundary::UNKNOWN);
         let radius = self.radius.get();
         let passed = |place: DVec3, foot: f64| ends.passed(place, foot);
-        whole.summed(map, (ray, ends.span()), of, passed, |visit| match radii {
+        whole.summed(map, (ray, ends.span()), of, passed, |_, visit| match radii {
             Some(radii) => map.along_by_radii(ray, ends.span(), radii, visit),
             None => map.along(ray, ends.span(), radius, |photon, foot, squared| {
                 visit(photon, radius, foot, squared)
@@ -132,12 +153,12 @@ impl RayEstimator {
         (ray, span): (&Ray, Interval),
         (medium, boundary): (&Medium, &Boundary<'_>),
         passed: impl Fn(DVec3, f64) -> Spectrum,
-        each: impl FnOnce(&mut dyn FnMut(Photon, f64, f64, f64)) -> bool,
+        each: impl FnOnce(&Beside<'_>, &mut dyn FnMut(Photon, f64, f64, f64)) -> bool,
     ) -> RayEstimate {
         let phase = medium.phase();
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
         let beside = Beside::new(boundary, ray, span, self.radius.get());
-        let is_known = each(&mut |photon, radius, foot, squared| {
+        let is_known = each(&beside, &mut |photon, radius, foot, squared| {
             let place = (photon.position, radius, squared);
             let Some(share) = self.share(map, (boundary, &beside), place, (ray, foot)) else {
                 rejected += 1;
@@ -154,9 +175,13 @@ impl RayEstimator {
                 * passed(photon.position, foot)
                 * (weight / (area * share));
         });
-        let scale = self.kernel.disc_peak() / map.emitted() as f64;
-        let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
+        let value = if is_known { sum * self.scale(map, 1.0) } else { Spectrum::grey(f64::NAN) };
         RayEstimate { value, found, rejected }
+    }
+
+    /// What a sum of photons is multiplied by whose kernels are relative to a radius.
+    fn scale(&self, map: &PhotonMap, radius: f64) -> f64 {
+        self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64
     }
 
     /// What a photon is divided by; none if it is of another medium, or a body hides it from its foot on the ray.
@@ -174,5 +199,63 @@ impl RayEstimator {
             |about| about.keeps(photon),
             |about| about.disc_share(self.kernel, ray.dir, radius, map.run(), seen),
         )
+    }
+}
+
+/// Optical depths of the map's unit above this are asked in double precision: exponents in single precision have 10^-7 of it.
+const THICK: f64 = 16.0;
+
+/// Exponents beyond this are those of a stretch that holds no photon.
+const NOWHERE: f64 = 64.0;
+
+/// The sum over photons about a ray by rows, of a medium that is the same everywhere and where nothing is hidden or cut off.
+struct Rows<'a> {
+    kernel: Kernel,
+    medium: &'a Medium,
+    /// Direction of travel towards the near end.
+    wo: [f32; 3],
+    /// Rates of decay, over the tree's unit; one where they are the same in all channels.
+    rates: [f32; 3],
+    is_grey: bool,
+    /// What passes from where feet count, times the albedo.
+    before: Spectrum,
+    sum: LaneSum,
+    found: usize,
+}
+
+impl<'a> Rows<'a> {
+    /// None where the medium is too thick for single precision.
+    fn new(
+        of: &RayEstimator,
+        map: &PhotonMap,
+        (ray, medium): (&Ray, &'a Medium),
+        (start, rate): (f64, Spectrum),
+    ) -> Option<Self> {
+        let (unit, middle) = (map.tree().unit(), map.tree().middle_of(ray));
+        let depth = rate.map(|rate| (rate * (middle - start)).max(-NOWHERE));
+        (rate.max() * unit <= THICK).then(|| Rows {
+            kernel: of.kernel,
+            medium,
+            wo: (-ray.dir).as_vec3().to_array(),
+            rates: rate.0.to_array().map(|rate| (rate * unit) as f32),
+            is_grey: rate.is_grey(),
+            before: decay(depth) * medium.albedo(ray.at(start)),
+            sum: LaneSum::default(),
+            found: 0,
+        })
+    }
+
+    #[inline(always)]
+    fn add(&mut self, row: &AlongRow<'_>) {
+        let inside = row.inside();
+        self.found += inside.to_bitmask().count_ones() as usize;
+        let pairs = CosinePairs { dir: row.dir(), wo: self.wo, inside };
+        let value = self.kernel.profiles(row.u2()) * self.medium.phase().values(pairs);
+        let weight = |rate: f32| inside & (value * (row.feet() * f32x8::splat(-rate)).exp());
+        if self.is_grey {
+            self.sum.add(weight(self.rates[0]), row.power());
+        } else {
+            self.sum.add_each(self.rates.map(weight), row.power());
+        }
     }
 }

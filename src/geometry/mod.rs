@@ -247,6 +247,18 @@ impl Shape {
         }
     }
 
+    /// The part of a ray in which [`Shape::room`] is at least `least`, which is above 0 \[L\]; none where that is nowhere, or the shape is
+    /// not solid.
+    pub fn interval_with_room(&self, ray: &Ray, least: f64) -> Option<Interval> {
+        let inner = match self {
+            Shape::Sphere(s) => Shape::Sphere(Sphere::new(s.center(), s.radius() - least).ok()?),
+            Shape::Slab(s) => Shape::Slab(Slab::new(s.top() + least, s.thickness() - 2.0 * least).ok()?),
+            Shape::Cuboid(c) => Shape::Cuboid(Cuboid::new(c.min() + least, c.max() - least).ok()?),
+            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => return None,
+        };
+        inner.interval(ray)
+    }
+
     /// Distance from a point, on either side, to the nearest point of the surface, or `limit` where that is farther \[L\].
     pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
         let distance = match self {

@@ -1,6 +1,6 @@
 //! A photon map: the photons that one pass stored, and how many that pass emitted.
 
-use super::tree::Radii;
+use super::tree::{AlongRow, Radii};
 use super::{Photon, PhotonTree, Photons, periodic};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
@@ -135,7 +135,20 @@ impl PhotonMap {
         self.in_cells((ray, span), radius, |ray, span| self.tree.along(ray, span, radius, &mut each))
     }
 
-    /// The same of every photon whose own radius reaches the ray, with that radius \[L\] before the other numbers.
+    /// [`PhotonMap::along`], but in parts of the span, which are apart and in order, told of by rows in single precision. False, and
+    /// nothing visited, where the map cannot tell so: in a periodic cell, or of a radius below 10^-3 of the map.
+    pub fn along_by_rows(
+        &self,
+        way: (&Ray, Interval, f64),
+        parts: &[Interval],
+        mut visit: impl FnMut(Photon, f64, f64),
+        visit_row: impl FnMut(AlongRow<'_>),
+    ) -> bool {
+        let each = |place: usize, foot: f64, squared: f64| visit(self.tree.photon(place), foot, squared);
+        self.period.is_none() && self.tree.along_by_rows(way, parts, each, visit_row)
+    }
+
+    /// [`PhotonMap::along`] of every photon whose own radius reaches the ray, with that radius \[L\] before the other numbers.
     pub fn along_by_radii(
         &self,
         ray: &Ray,

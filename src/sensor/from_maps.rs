@@ -245,7 +245,7 @@ fn radiance(
                     Some(radii) => {
                         of_rays.radiance_by_radii((map, radii), way, medium, &boundary, passed).value
                     }
-                    None => of_rays.radiance(map, way, medium, &boundary, passed).value,
+                    None => of_rays.radiance(map, way, medium, &boundary, &passage).value,
                 }),
                 AskedMap::Beams(map) => across(map),
                 AskedMap::Planes(planes, direct) => {

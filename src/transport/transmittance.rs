@@ -94,6 +94,14 @@ impl<'a> Passage<'a> {
         Passage { way: (medium, ray, part.start), tracked }
     }
 
+    /// Where the stretch starts \[L\] and the rate of decay from there [1/L], where the medium is the same everywhere.
+    pub fn rate(&self) -> Option<(f64, Spectrum)> {
+        match self.way {
+            (Medium::Homogeneous(medium), _, start) => Some((start, medium.sigma_t())),
+            _ => None,
+        }
+    }
+
     /// The fraction of light that passes from the near end to a distance `t` along the ray \[1\].
     pub fn to(&self, t: f64) -> Spectrum {
         let (medium, ray, start) = self.way;

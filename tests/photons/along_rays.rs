@@ -15,9 +15,10 @@ use std::num::NonZeroUsize;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel, RayEstimator};
-use turbid::geometry::{Rectangle, Shape};
+use turbid::geometry::{Rectangle, Shape, Slab, Sphere};
 use turbid::math::{FOUR_PI, Interval, Positive, Ray, exp, warp};
-use turbid::medium::Medium;
+use turbid::medium::{Homogeneous, Medium};
+use turbid::phase::Phase;
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::photons::{Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
@@ -258,6 +259,54 @@ fn a_uniform_source_comes_out_right_beside_walls() {
         }
         verdict::rejects(&format!("not clipped, {name}"), &moments[1][0], expected, 12);
     }
+}
+
+/// Where the medium is the same everywhere rows of photons are read at once: as one by one, with every kernel, phase functions of every
+/// kind, colours or none, clipped or not, in every solid shape, alone and with a wall and a hole, before, in and behind the medium.
+#[test]
+fn rows_are_read_as_photons_are_one_by_one() {
+    let synthetic = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::ONE).unwrap();
+    let map = synthetic.map(Number::Exact(20_000), 12, 1).unwrap();
+    let wall = Rectangle::new(DVec3::new(0.3, 0.0, 0.3), DVec3::Y, DVec3::new(0.4, 0.0, 0.25)).unwrap();
+    let walls = [Shape::Rectangle(wall)];
+    let holes = [cuboid(DVec3::new(0.4, 0.5, 0.1), DVec3::new(0.7, 0.8, 0.4))];
+    let shapes = [
+        cuboid(DVec3::ZERO, DVec3::ONE),
+        Shape::Sphere(Sphere::new(DVec3::splat(0.5), 0.5).unwrap()),
+        Shape::Slab(Slab::new(0.1, 0.7).unwrap()),
+    ];
+    let mut stream = Stream::new(4, Purpose::Synthetic, 0, 0);
+    let mut read = 0;
+    for (trial, phase) in Phase::specimens().into_iter().enumerate() {
+        let sigma_t = [Spectrum::ONE, Spectrum::rgb(0.3, 4.0, 1.0), Spectrum::rgb(0.0, 12.0, 0.1)][trial % 3];
+        let medium =
+            Medium::Homogeneous(Homogeneous::new(sigma_t, Spectrum::rgb(0.5, 0.9, 0.7), phase).unwrap());
+        for (which, shape) in shapes.iter().enumerate() {
+            let known = Boundary::of(shape).unwrap();
+            let among = [known, known.about(&walls), known.among(&holes).about(&walls), Boundary::UNKNOWN];
+            let boundary = &among[(trial + which) % 4];
+            let origin = DVec3::from(stream.triple()) * 3.0 - 1.0;
+            let ray = Ray::new(origin, (DVec3::from(stream.triple()) - origin).normalize());
+            let Some(span) = shape.interval(&ray) else { continue };
+            let passage = Passage::new(&medium, &ray, span, &mut stream);
+            for (kernel, is_clipped) in Kernel::ALL.into_iter().zip([true, false].into_iter().cycle()) {
+                let radius = [0.02, 0.1, 0.3][trial % 3];
+                let reading = RayEstimator { is_clipped, ..reading(kernel, radius) };
+                let rows = reading.radiance(&map, (&ray, span), &medium, boundary, &passage);
+                let single = reading.radiance(&map, (&ray, span), &medium, boundary, |t| passage.to(t));
+                read += rows.found;
+                let what = format!("{trial} {which} {kernel:?} {is_clipped}");
+                // A photon at the edge may count by one and not by the other.
+                assert!(rows.found.abs_diff(single.found) <= 1, "{what}: {rows:?} {single:?}");
+                assert!(rows.rejected.abs_diff(single.rejected) <= 1, "{what}: {rows:?} {single:?}");
+                if rows.found == single.found {
+                    let off = (rows.value - single.value).map(f64::abs).max();
+                    assert!(off <= 2e-5 * single.value.max(), "{what}: {rows:?} {single:?}");
+                }
+            }
+        }
+    }
+    assert!(read > 10_000, "{read}");
 }
 
 /// Light that is scattered twice and more, along rays through a box of even and of varying density: as by paths.

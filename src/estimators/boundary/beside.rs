@@ -48,6 +48,32 @@ impl<'a> Beside<'a> {
         Some(if is_whole { 1.0 } else { share(&about) })
     }
 
+    /// Parts of the stretch, in order and apart, of which everything within a radius is of the medium and seen, or nothing is asked.
+    pub fn clear_parts(&self, span: Interval, radius: f64, is_clipped: bool) -> Vec<Interval> {
+        if self.boundary.is_clear() && !is_clipped {
+            return vec![span];
+        }
+        let inner = match self.boundary.medium {
+            Some(medium) => medium.interval_with_room(self.ray, BEYOND * radius),
+            None => Some(span),
+        };
+        let Some(mut rest) = inner.and_then(|inner| inner.intersection(span)) else { return Vec::new() };
+        let mut near: Vec<Interval> = self.bodies.iter().chain(&self.later).map(|(part, _)| *part).collect();
+        near.sort_unstable_by(|a, b| a.start.total_cmp(&b.start));
+        let mut parts = Vec::new();
+        for part in near {
+            if part.start > rest.start {
+                parts.push(Interval { start: rest.start, end: part.start.min(rest.end) });
+            }
+            rest.start = rest.start.max(part.end);
+            if rest.start >= rest.end {
+                return parts;
+            }
+        }
+        parts.push(rest);
+        parts
+    }
+
     /// Whether everything within a radius of the place at a distance along the ray is of the medium and seen, as far as boxes tell.
     fn is_clear(&self, along: f64, radius: f64) -> bool {
         let is_far = |near: &[(Interval, &Shape)]| near.iter().all(|(part, _)| !holds(part, along));

@@ -46,6 +46,14 @@ static SPIRAL: LazyLock<Vec<DVec3>> = LazyLock::new(|| {
     (0..DIRECTIONS).map(one).collect()
 });
 
+/// Cosines and sines of directions at equal angles.
+static CIRCLE: LazyLock<[DVec2; ACROSS as usize]> = LazyLock::new(|| {
+    std::array::from_fn(|n| {
+        let (sin, cos) = sin_cos(TAU * n as f64 / f64::from(ACROSS));
+        DVec2::new(cos, sin)
+    })
+});
+
 /// A body near a point.
 struct Body<'a> {
     shape: &'a Shape,
@@ -256,12 +264,10 @@ impl<'a> Surroundings<'a> {
             let lines: Vec<(DVec2, f64)> = planes.iter().filter_map(line).collect();
             return share_before(kernel, &lines).max(least);
         }
-        let turn = self.stream(salt).unit();
-        let one = |n: u32| {
-            let (sin, cos) = sin_cos(TAU * (f64::from(n) + turn) / f64::from(ACROSS));
-            self.along(&|u| kernel.within_disc(u), (axes.x * cos + axes.y * sin).normalize(), radius)
-        };
-        ((0..ACROSS).map(one).sum::<f64>() / f64::from(ACROSS)).max(least)
+        let (sin, cos) = sin_cos(TAU * self.stream(salt).unit() / f64::from(ACROSS));
+        let (x, y) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
+        let one = |to: &DVec2| self.along(&|u| kernel.within_disc(u), x * to.x + y * to.y, radius);
+        (CIRCLE.iter().map(one).sum::<f64>() / f64::from(ACROSS)).max(least)
     }
 
     /// The part of the line's kernel along a unit vector, both ways, in which beams are kept: exact. At least as far as `seen` \[L\] to

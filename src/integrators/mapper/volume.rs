@@ -133,10 +133,11 @@ impl Eye<'_, '_> {
             let passage = Passage::new(medium, &walker.ray, span, stream);
             let boundary = mapper.extents[number].boundary();
             let way = (&walker.ray, span);
-            let passed = |t: f64| passage.to(t);
             let estimate = match &mapper.radii {
-                Some(radii) => along.radiance_by_radii((map, radii), way, medium, &boundary, passed),
-                None => along.radiance(map, way, medium, &boundary, passed),
+                Some(radii) => {
+                    along.radiance_by_radii((map, radii), way, medium, &boundary, |t| passage.to(t))
+                }
+                None => along.radiance(map, way, medium, &boundary, &passage),
             };
             self.report.volume.add_along(along.radius, &estimate);
             self.layers.multiple += seen * estimate.value;

@@ -28,6 +28,8 @@ pub(in crate::photons) struct Cylinder {
     inverse: [f32; 3],
     span: [f32; 2],
     radius: f32,
+    /// How far from the ray's own origin distances along it count.
+    middle: f64,
 }
 
 impl Cylinder {
@@ -49,6 +51,7 @@ impl Cylinder {
             inverse: dir.map(|d| (1.0 / d) as f32),
             span: [(along(span.start) - MARGIN) as f32, (along(span.end) + MARGIN) as f32],
             radius: (radius + MARGIN) as f32,
+            middle,
         })
     }
 
@@ -138,6 +141,17 @@ impl Cylinder {
         let (away, reach) = (cross(&way, &dir), radius + halves);
         let is_near = dot(&away, &away).simd_le(reach * reach) & reach.simd_ge(f32x8::ZERO);
         (is_beside & is_near).to_bitmask()
+    }
+
+    /// A part of the ray from end to end, as [`Cylinder::feet`] count, in all lanes.
+    pub(super) fn stretch(&self, units: &Units, part: &Interval) -> [f32x8; 2] {
+        [part.start, part.end].map(|t| f32x8::splat((units.shrink(t) - self.middle).clamp(-2.0, 2.0) as f32))
+    }
+
+    /// How far along the ray the feet of eight positions are.
+    #[inline(always)]
+    pub(super) fn feet(&self, positions: &Row) -> f32x8 {
+        dot(&self.way(positions), &self.dir())
     }
 
     /// Squared distances of eight positions from the ray.

@@ -15,7 +15,7 @@ use turbid::photons::planes::PlaneMap;
 use turbid::photons::{Emitter, Histories, Photon, PhotonMap, Run, Storage};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Scene;
-use turbid::transport::{Flags, NoProgress};
+use turbid::transport::{Flags, NoProgress, Passage};
 
 /// All cells.
 pub fn groups(settings: &Settings) -> Vec<Group> {
@@ -128,7 +128,12 @@ impl Passes<'_> {
         let radius = Positive::new("the radius", radius)?;
         let discs = RayEstimator { kernel: Kernel::Uniform, radius, is_clipped: self.medium.is_clipped() };
         let (medium, span) = (self.scene.medium(0), self.medium.span());
-        Ok(self.each(|ray| of(discs.radiance(map, (ray, span), medium, &self.boundary, passed))))
+        Ok(self.each(|ray| {
+            // Nothing is drawn.
+            let mut stream = Stream::new(self.seed, Purpose::Synthetic, 0, 0);
+            let passage = Passage::new(medium, ray, span, &mut stream);
+            of(discs.radiance(map, (ray, span), medium, &self.boundary, &passage))
+        }))
     }
 
     fn along_beams(&self, map: &BeamMap, radius: f64) -> anyhow::Result<Vec<Found>> {
