@@ -79,6 +79,20 @@ impl Photons {
         (0..self.len()).map(|index| self.get(index))
     }
 
+    /// How many are not finite in every column.
+    pub(super) fn non_finite(&self) -> u64 {
+        let finite = |column: &[Vec3]| column.iter().fold(true, |all, vector| all & vector.is_finite());
+        let are_finite = self.positions.iter().fold(true, |all, position| all & position.is_finite())
+            && [&self.dirs, &self.normals, &self.powers].into_iter().all(|column| finite(column));
+        if are_finite {
+            return 0;
+        }
+        let is_finite = |p: &Photon| {
+            p.position.is_finite() && p.dir.is_finite() && p.normal.is_finite() && p.power.is_finite()
+        };
+        self.iter().filter(|photon| !is_finite(photon)).count() as u64
+    }
+
     /// Adds a photon.
     #[inline]
     pub fn push(&mut self, photon: Photon) {

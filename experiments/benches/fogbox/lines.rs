@@ -15,7 +15,7 @@ use turbid::sensor::{Film, Method, Streams};
 use turbid::transport::NoProgress;
 
 /// Independent maps of each way.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 8;
 /// Photons, or flights, stored in each, and samples a pixel.
 const POINTS: u64 = 65_000;
 const BEAMS: u64 = 5_000;
@@ -23,7 +23,7 @@ const SAMPLES: u64 = 1;
 /// Radii about rays [mean free paths are 2].
 const RADII: [f64; 3] = [0.05, 0.1, 0.2];
 /// Paths of the reference: samples a pixel of each of its rounds.
-const REFERENCE: (usize, u64) = (8, 128);
+const REFERENCE: (usize, u64) = (8, 512);
 
 /// A way to read the map.
 struct Way {

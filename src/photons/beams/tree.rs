@@ -136,6 +136,14 @@ impl BeamTree {
         self.each_piece((ray, span, radius), &mut ask, |group, cylinder| group.near(cylinder));
     }
 
+    /// How many pieces of beams [`BeamTree::near`] asks, sixteen at a time: what it costs.
+    pub fn asked_near(&self, ray: &Ray, span: Interval, radius: f64) -> usize {
+        let Some(cylinder) = Cylinder::new(&self.units, ray, span, radius) else { return self.pieces.len() };
+        let mut asked = 0;
+        cylinder.each_touched(&self.levels, |group| asked += GROUP.min(self.pieces.len() - group * GROUP));
+        asked
+    }
+
     /// Visits every beam whose point nearest to a place lies on it, its start included and its end not, and within `radius` \[L\] of the
     /// place, with the distance along the beam \[L\] and the square of that between both \[L^2\].
     pub fn about(&self, place: DVec3, radius: f64, mut visit: impl FnMut(&Beam, f64, f64)) {

@@ -95,7 +95,7 @@ impl PhotonTree {
         if u32::try_from(stored).is_err() {
             return Err(Error::out_of_range("the number of photons in one map", stored as f64, "below 2^32"));
         }
-        let units = Units::of(&parts)?;
+        let units = Units::of(&parts, is_parallel)?;
         let (mut entries, columns) = Columns::of(parts, &units);
         if stored > 0 {
             order::kd_order(&mut entries, &columns, is_parallel, progress);

@@ -295,7 +295,7 @@ mod tests {
             };
             let photons: Photons = (0..50_000).map(photon).collect();
             let count = photons.len();
-            let units = Units::of(std::slice::from_ref(&photons)).unwrap();
+            let units = Units::of(std::slice::from_ref(&photons), false).unwrap();
             let (entries, columns) = Columns::of(vec![photons], &units);
             let sorted = |most: usize, parallel: bool| {
                 let (mut entries, progress) = (entries.clone(), Counted(AtomicU64::new(0)));

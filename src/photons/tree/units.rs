@@ -1,8 +1,9 @@
 //! The tree's own unit of length: a power of two, about half the map's box.
 
 use crate::error::{Error, Result};
-use crate::photons::{Photon, Photons};
+use crate::photons::Photons;
 use glam::DVec3;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// Distances beyond this many units see the whole map as one point, and distances below its inverse are not
 /// told apart from zero: squares of both stay far inside the range of f32 (2^-126 to 2^127).
@@ -22,20 +23,25 @@ pub(in crate::photons) struct Units {
 
 impl Units {
     /// The units of the box of all photons, which must be finite in every part.
-    pub(super) fn of(parts: &[Photons]) -> Result<Self> {
-        let mut photons = parts.iter().flat_map(Photons::iter).peekable();
-        let start = photons.peek().map_or(DVec3::ZERO, |photon| photon.position);
-        let (mut lower, mut upper, mut non_finite) = (start, start, 0);
-        for Photon { position, dir, normal, power, .. } in photons {
-            lower = lower.min(position);
-            upper = upper.max(position);
-            non_finite += u64::from(
-                !(position.is_finite() && dir.is_finite() && normal.is_finite() && power.is_finite()),
-            );
-        }
-        match non_finite {
-            0 => Ok(Units::new(lower, upper)),
-            count => Err(Error::NonFinite { count, place: "stored photons" }),
+    pub(super) fn of(parts: &[Photons], is_parallel: bool) -> Result<Self> {
+        let of_part = |part: &Photons| {
+            let nowhere = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+            let widened = |(lower, upper): (DVec3, DVec3), p: &DVec3| (lower.min(*p), upper.max(*p));
+            let (lower, upper) = part.positions.iter().fold(nowhere, widened);
+            (lower, upper, part.non_finite())
+        };
+        let joined = |(lower, upper, count): (DVec3, DVec3, u64), other: (DVec3, DVec3, u64)| {
+            (lower.min(other.0), upper.max(other.1), count + other.2)
+        };
+        let filled: Vec<&Photons> = parts.iter().filter(|part| !part.is_empty()).collect();
+        let of_all = match is_parallel {
+            true => filled.into_par_iter().map(of_part).reduce_with(joined),
+            false => filled.into_iter().map(of_part).reduce(joined),
+        };
+        match of_all {
+            None => Ok(Units::new(DVec3::ZERO, DVec3::ZERO)),
+            Some((lower, upper, 0)) => Ok(Units::new(lower, upper)),
+            Some((_, _, count)) => Err(Error::NonFinite { count, place: "stored photons" }),
         }
     }
 
