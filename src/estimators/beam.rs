@@ -331,22 +331,20 @@ impl BeamEstimator {
         beam: &Beam,
     ) -> Option<f64> {
         let (radius, seen) = (self.radius.get(), away.length());
-        beside.divisor(
+        beside.disc_divisor(
+            self.kernel,
             (along, radius, seen),
             (self.is_clipped, true),
+            beam.start.x.to_bits(),
             |about| about.sees(ray.at(along) + away),
-            |about| about.disc_share(self.kernel, ray.dir, radius, beam.start.x.to_bits(), seen),
         )
     }
 
     /// What a beam is divided by; none if a body hides it from the ray.
     fn line_share(&self, beside: &Beside<'_>, ray: &Ray, crossing: &Crossing) -> Option<f64> {
         let (radius, along, seen) = (self.radius.get(), crossing.along_ray, crossing.offset.abs());
-        beside.divisor(
-            (along, radius, seen),
-            (self.is_clipped, true),
-            |about| about.sees(ray.at(along) + crossing.normal * crossing.offset),
-            |about| about.line_share(self.kernel, crossing.normal, radius, seen),
-        )
+        beside.line_divisor(self.kernel, (along, radius, seen), self.is_clipped, crossing.normal, |about| {
+            about.sees(ray.at(along) + crossing.normal * crossing.offset)
+        })
     }
 }

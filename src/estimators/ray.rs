@@ -160,7 +160,7 @@ impl RayEstimator {
         let beside = Beside::new(boundary, ray, span, self.radius.get());
         let is_known = each(&beside, &mut |photon, radius, foot, squared| {
             let place = (photon.position, radius, squared);
-            let Some(share) = self.share(map, (boundary, &beside), place, (ray, foot)) else {
+            let Some(share) = self.share(map, (boundary, &beside), place, foot) else {
                 rejected += 1;
                 return;
             };
@@ -190,14 +190,14 @@ impl RayEstimator {
         map: &PhotonMap,
         (boundary, beside): (&Boundary<'_>, &Beside<'_>),
         (photon, radius, squared): (DVec3, f64, f64),
-        (ray, foot): (&Ray, f64),
+        foot: f64,
     ) -> Option<f64> {
-        let seen = squared.sqrt();
-        beside.divisor(
-            (foot, radius, seen),
+        beside.disc_divisor(
+            self.kernel,
+            (foot, radius, squared.sqrt()),
             (self.is_clipped, boundary.is_only),
+            map.run(),
             |about| about.keeps(photon),
-            |about| about.disc_share(self.kernel, ray.dir, radius, map.run(), seen),
         )
     }
 }

@@ -1,13 +1,21 @@
 //! What comes near a stretch of a ray: looked for once, and asked at every place of it.
 
 use super::Boundary;
-use super::visible::Surroundings;
-use crate::geometry::{Cuboid, Shape};
-use crate::math::{Interval, Ray};
-use glam::DVec3;
+use super::visible::{ALONG, Surroundings, least_of_disc};
+use crate::estimators::Kernel;
+use crate::estimators::disc_share::share_before;
+use crate::geometry::{Cuboid, Front, Shape};
+use crate::math::{Frame, Interval, Ray};
+use glam::{DVec2, DVec3};
 
 /// Bodies are looked for a little beyond a radius, so that rounding leaves none out.
 const BEYOND: f64 = 1.001;
+
+/// Bodies that reach no farther out of a face of the medium than this part of the radius neither hide nor cut off what the face does not.
+const IN_FACE: f64 = 1e-6;
+
+/// Faces that a medium bounded by planes has at most.
+const FACES: usize = 6;
 
 /// The bodies and regions that come within a distance of a stretch of a ray, each with the part of the line where it may.
 pub(in crate::estimators) struct Beside<'a> {
@@ -15,6 +23,9 @@ pub(in crate::estimators) struct Beside<'a> {
     ray: &'a Ray,
     bodies: Vec<(Interval, &'a Shape)>,
     later: Vec<(Interval, &'a Shape)>,
+    /// The medium's faces as the ray's origin has them, where they are planes; directions across the ray beside.
+    faces: Option<Vec<Front>>,
+    axes: Frame,
 }
 
 impl<'a> Beside<'a> {
@@ -22,15 +33,81 @@ impl<'a> Beside<'a> {
     pub fn new(boundary: &'a Boundary<'_>, ray: &'a Ray, span: Interval, radius: f64) -> Self {
         let reach = BEYOND * radius;
         let near = |shape: &'a Shape| Some((about(shape, ray, reach)?.intersection(span)?, shape));
-        let bodies = boundary.bodies.iter().filter_map(near).collect();
+        let faces = boundary.medium.and_then(|medium| medium.faces_about(ray.origin));
+        let is_in_face = |shape: &Shape| {
+            let is_behind = |face: &Front| shape.is_behind(ray.origin, face, IN_FACE * radius);
+            faces.as_ref().is_some_and(|faces| faces.iter().any(is_behind))
+        };
+        let bodies = boundary.bodies.iter().filter_map(near).filter(|(_, body)| !is_in_face(body)).collect();
         let later = boundary.later.iter().filter_map(near).collect();
-        Beside { boundary, ray, bodies, later }
+        Beside { boundary, ray, bodies, later, faces, axes: Frame::new(ray.dir) }
+    }
+
+    /// What a photon is divided by that is found on the disc of a radius across the ray, `seen` \[L\] from its middle at a distance along
+    /// it, as [`Beside::divisor`]. `salt` of what is chosen at random.
+    pub fn disc_divisor(
+        &self,
+        kernel: Kernel,
+        (along, radius, seen): (f64, f64, f64),
+        (is_clipped, is_owned): (bool, bool),
+        salt: u64,
+        keeps: impl FnOnce(&Surroundings<'_>) -> bool,
+    ) -> Option<f64> {
+        let of_disc = |about: &Surroundings<'_>| about.disc_share(kernel, self.ray.dir, radius, salt, seen);
+        match &self.faces {
+            Some(faces) if is_clipped && is_owned && self.is_far(along) => {
+                if self.is_whole(along, radius) {
+                    return Some(1.0);
+                }
+                let (mut lines, mut count) = ([(DVec2::ZERO, 0.0); FACES], 0);
+                for face in faces {
+                    let across = -DVec2::new(face.normal.dot(self.axes.x), face.normal.dot(self.axes.y));
+                    let sine = across.length();
+                    let away = face.height(self.ray.dir * along).max(0.0) / (radius * sine);
+                    if sine > ALONG && away < 1.0 {
+                        lines[count] = (across / sine, away);
+                        count += 1;
+                    }
+                }
+                Some(share_before(kernel, &lines[..count]).max(least_of_disc(kernel, seen / radius)))
+            }
+            _ => self.divisor((along, radius, seen), (is_clipped, is_owned), keeps, of_disc),
+        }
+    }
+
+    /// What a beam is divided by that passes `seen` \[L\] from the place at a distance along the ray, both ways along `across`, a unit vector.
+    pub fn line_divisor(
+        &self,
+        kernel: Kernel,
+        (along, radius, seen): (f64, f64, f64),
+        is_clipped: bool,
+        across: DVec3,
+        keeps: impl FnOnce(&Surroundings<'_>) -> bool,
+    ) -> Option<f64> {
+        let of_line = |about: &Surroundings<'_>| about.line_share(kernel, across, radius, seen);
+        match &self.faces {
+            Some(faces) if is_clipped && self.is_far(along) => {
+                if self.is_whole(along, radius) {
+                    return Some(1.0);
+                }
+                let up_to = |towards: DVec3| {
+                    let reach = |face: &Front| {
+                        let sine = -face.normal.dot(towards);
+                        if sine > ALONG { face.height(self.ray.dir * along).max(0.0) / sine } else { radius }
+                    };
+                    0.5 * kernel.within_line(faces.iter().map(reach).fold(radius, f64::min) / radius)
+                };
+                let least = 0.5 * kernel.within_line(seen / radius);
+                Some((up_to(across) + up_to(-across)).max(least).max(f64::MIN_POSITIVE))
+            }
+            _ => self.divisor((along, radius, seen), (is_clipped, true), keeps, of_line),
+        }
     }
 
     /// What a photon or beam is divided by that is found within a radius of the place at a distance along the ray, `seen` \[L\] away from it:
     /// 1 where everything about it counts or nothing is clipped, else what `share` says of what stands there. None where it is not
     /// kept. `is_owned` where it is sure to be of the medium.
-    pub fn divisor(
+    fn divisor(
         &self,
         (along, radius, seen): (f64, f64, f64),
         (is_clipped, is_owned): (bool, bool),
@@ -76,8 +153,13 @@ impl<'a> Beside<'a> {
 
     /// Whether everything within a radius of the place at a distance along the ray is of the medium and seen, as far as boxes tell.
     fn is_clear(&self, along: f64, radius: f64) -> bool {
+        self.is_whole(along, radius) && self.is_far(along)
+    }
+
+    /// Whether neither bodies nor other regions are near the place at a distance along the ray, as far as boxes tell.
+    fn is_far(&self, along: f64) -> bool {
         let is_far = |near: &[(Interval, &Shape)]| near.iter().all(|(part, _)| !holds(part, along));
-        self.is_whole(along, radius) && is_far(&self.bodies) && is_far(&self.later)
+        is_far(&self.bodies) && is_far(&self.later)
     }
 
     /// Whether the medium's own faces are no nearer than a radius to the place at a distance along the ray.
@@ -109,4 +191,66 @@ fn about(shape: &Shape, ray: &Ray, reach: f64) -> Option<Interval> {
     let inside = Shape::Cuboid(cuboid).interval(ray)?;
     let margin = 1e-9 * (inside.end - inside.start);
     Some(Interval { start: inside.start - margin, end: inside.end + margin })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Rectangle, Slab};
+    use crate::math::warp;
+    use crate::rng::{Purpose, Stream};
+
+    /// The six faces of a cuboid as rectangles, and a sheet that stands in it.
+    fn walls(min: DVec3, size: DVec3) -> Vec<Shape> {
+        let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
+        let face = |corner, u, v| Shape::Rectangle(Rectangle::new(corner, u, v).unwrap());
+        let low = [(y, z), (z, x), (x, y)].map(|(u, v)| face(min, u, v));
+        let high = [(y, z), (z, x), (x, y)].map(|(u, v)| face(min + size, -u, -v));
+        [&low[..], &high, &[face(min + 0.4 * size, 0.3 * x, 0.2 * y + 0.1 * z)]].concat()
+    }
+
+    /// Between planes, with walls in them or none, and about a sheet: what is told of each place by itself.
+    #[test]
+    fn shares_are_those_of_each_place() {
+        let mut stream = Stream::new(7, Purpose::Synthetic, 0, 0);
+        let mut counts = [0; 3];
+        for trial in 0..4000 {
+            let (min, size) = (DVec3::from(stream.triple()) - 3.0, DVec3::from(stream.triple()) + 0.2);
+            let all = walls(min, size);
+            let (bodies, medium) = match trial % 4 {
+                0 => (&all[..6], Shape::Cuboid(Cuboid::new(min, min + size).unwrap())),
+                1 => (&all[..7], Shape::Cuboid(Cuboid::new(min, min + size).unwrap())),
+                2 => (&[][..], Shape::Cuboid(Cuboid::new(min, min + size).unwrap())),
+                _ => (&[][..], Shape::Slab(Slab::new(min.z, size.z).unwrap())),
+            };
+            let boundary = Boundary::of(&medium).unwrap().about(bodies);
+            let place = min + size * DVec3::from(stream.triple());
+            let dir = if trial % 3 == 0 { DVec3::Y } else { warp::square_to_sphere(stream.pair()) };
+            let along = 2.0 * stream.unit();
+            let ray = Ray::new(place - dir * along, dir);
+            let place = ray.at(along);
+            let radius = 0.6 * stream.unit() + 0.01;
+            let (kernel, seen, salt) = (Kernel::ALL[trial % 5], 0.3 * radius, trial as u64);
+            let span = Interval { start: 0.0, end: 2.0 };
+            let beside = Beside::new(&boundary, &ray, span, radius);
+            let about = Surroundings::new(&boundary, place, place, BEYOND * radius);
+            let is_whole = about.is_clear(radius) && medium.room(place) >= radius;
+            let across = Frame::new(dir).x;
+            let disc = if is_whole { 1.0 } else { about.disc_share(kernel, dir, radius, salt, seen) };
+            let line = if is_whole { 1.0 } else { about.line_share(kernel, across, radius, seen) };
+            let at = (along, radius, seen);
+            let told = [
+                beside.disc_divisor(kernel, at, (true, true), salt, |_| true).unwrap(),
+                beside.line_divisor(kernel, at, true, across, |_| true).unwrap(),
+            ];
+            counts[if beside.is_far(along) { usize::from(is_whole) } else { 2 }] += 1;
+            for (told, expected) in told.into_iter().zip([disc, line]) {
+                assert!(
+                    (told - expected).abs() < 1e-5,
+                    "{trial}: {told} {expected} {boundary:?} {place} {dir}"
+                );
+            }
+        }
+        assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
+    }
 }

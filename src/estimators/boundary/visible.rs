@@ -29,7 +29,7 @@ const MOST: u32 = 16 * DIRECTIONS;
 /// of a scene's numbers leaves. They hide no larger part of the kernel then.
 const ON_PLANE: f64 = 1e-6;
 /// Sines of angles below this are those of a plane along a disc.
-const ALONG: f64 = 1e-9;
+pub(super) const ALONG: f64 = 1e-9;
 /// The farthest that a point lies from the middle of a circle, in parts of its radius.
 const INSIDE: f64 = 1.0 - 1e-12;
 /// Turns of this angle spread points evenly about an axis \[rad\]: pi (3 - sqrt 5).
@@ -53,6 +53,12 @@ static CIRCLE: LazyLock<[DVec2; ACROSS as usize]> = LazyLock::new(|| {
         DVec2::new(cos, sin)
     })
 });
+
+/// The least part of a disc's kernel in which photons are kept where there is one, `seen` over the radius from its middle: what one
+/// direction brings.
+pub(super) fn least_of_disc(kernel: Kernel, seen: f64) -> f64 {
+    (kernel.within_disc(seen) / f64::from(ACROSS)).max(f64::MIN_POSITIVE)
+}
 
 /// A body near a point.
 struct Body<'a> {
@@ -244,7 +250,7 @@ impl<'a> Surroundings<'a> {
     /// direction brings that sees as far as `seen` \[L\], where there is a photon.
     pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64, seen: f64) -> f64 {
         let axes = Frame::new(axis);
-        let least = (kernel.within_disc(seen / radius) / f64::from(ACROSS)).max(f64::MIN_POSITIVE);
+        let least = least_of_disc(kernel, seen / radius);
         if let (Some(Shape::Sphere(ball)), true) = (self.medium, self.is_clear(radius)) {
             let way = self.eye - ball.center();
             let height = way.dot(axis);
