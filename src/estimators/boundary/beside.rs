@@ -11,7 +11,8 @@ use glam::{DVec2, DVec3};
 /// Bodies are looked for a little beyond a radius, so that rounding leaves none out.
 const BEYOND: f64 = 1.001;
 
-/// Bodies that reach no farther out of a face of the medium than this part of the radius neither hide nor cut off what the face does not.
+/// Bodies that reach no farther out of a face of the medium than this part of the radius, and of the medium's thickness, neither hide nor
+/// cut off what the face does not.
 const IN_FACE: f64 = 1e-6;
 
 /// Faces that a medium bounded by planes has at most.
@@ -34,8 +35,11 @@ impl<'a> Beside<'a> {
         let reach = BEYOND * radius;
         let near = |shape: &'a Shape| Some((about(shape, ray, reach)?.intersection(span)?, shape));
         let faces = boundary.medium.and_then(|medium| medium.faces_about(ray.origin));
+        // Faces come in pairs.
+        let thickness = |pair: &[Front]| pair.iter().map(|face| face.distance).sum::<f64>();
+        let thinnest = faces.iter().flat_map(|faces| faces.chunks(2)).map(thickness).fold(radius, f64::min);
         let is_in_face = |shape: &Shape| {
-            let is_behind = |face: &Front| shape.is_behind(ray.origin, face, IN_FACE * radius);
+            let is_behind = |face: &Front| shape.is_behind(ray.origin, face, IN_FACE * thinnest);
             faces.as_ref().is_some_and(|faces| faces.iter().any(is_behind))
         };
         let bodies = boundary.bodies.iter().filter_map(near).filter(|(_, body)| !is_in_face(body)).collect();
@@ -229,8 +233,9 @@ mod tests {
             let along = 2.0 * stream.unit();
             let ray = Ray::new(place - dir * along, dir);
             let place = ray.at(along);
-            let radius = 0.6 * stream.unit() + 0.01;
-            let (kernel, seen, salt) = (Kernel::ALL[trial % 5], 0.3 * radius, trial as u64);
+            // A disc may be larger than all there is.
+            let radius = if trial % 11 == 0 { 1e6 } else { 0.6 * stream.unit() + 0.01 };
+            let (kernel, seen, salt) = (Kernel::ALL[trial % 5], 0.3 * radius.min(1e-3), trial as u64);
             let span = Interval { start: 0.0, end: 2.0 };
             let beside = Beside::new(&boundary, &ray, span, radius);
             let about = Surroundings::new(&boundary, place, place, BEYOND * radius);
@@ -245,8 +250,9 @@ mod tests {
             ];
             counts[if beside.is_far(along) { usize::from(is_whole) } else { 2 }] += 1;
             for (told, expected) in told.into_iter().zip([disc, line]) {
+                // What is left of 1 where lines are all but through the middle of the disc has rounding of that.
                 assert!(
-                    (told - expected).abs() < 1e-5,
+                    (told - expected).abs() < 1e-5 * expected + 1e-15,
                     "{trial}: {told} {expected} {boundary:?} {place} {dir}"
                 );
             }
