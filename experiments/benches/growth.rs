@@ -97,7 +97,7 @@ impl Bench {
         let counts = [1e5, 1e6, 1e7, 1e8];
         let counts = if is_large { &counts[..] } else { &counts[..3] };
         self.row("photons stored in the box of fog: their pass and their tree", &counts[..3], |size| {
-            timed(|| Ok(_ = black_box(fill(&fog, &amounts(1, counts[size] as u64, false), &NoProgress)?)))
+            timed(|| Ok(_ = black_box(fill(&fog, &amounts(1, counts[size] as u64), &NoProgress)?)))
         })?;
         self.row("photons in a tree: its build", counts, |size| {
             let photons = strewn(counts[size] as u64);
@@ -162,13 +162,12 @@ impl Bench {
     /// Time of one thread over that of two, by the clock on the wall.
     fn threads(&mut self) -> Result<()> {
         let fog = fogbox()?;
-        let pools = [1, 2].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build());
-        let [one, two] = pools;
-        let (one, two) = (one?, two?);
+        let pool = |threads: usize| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let (one, two) = (pool(1)?, pool(2)?);
         let works: [(&str, &(dyn Fn() -> Result<()> + Sync)); 3] = [
             ("threads: paths", &|| picture(&fog, 128, 8).map(|_| ())),
             ("threads: photons shot and their trees", &|| {
-                Ok(_ = black_box(fill(&fog, &amounts(300_000, 300_000, false), &NoProgress)?))
+                Ok(_ = black_box(fill(&fog, &amounts(300_000, 300_000), &NoProgress)?))
             }),
             ("threads: a picture from maps", &|| from_maps(&fog)),
         ];
@@ -212,7 +211,11 @@ impl Bench {
             ("start: exact slab", "exact", slab.to_vec()),
         ] {
             let path = folder.join(program);
-            if !self.wants(name) || !path.is_file() {
+            if !self.wants(name) {
+                continue;
+            }
+            if !path.is_file() {
+                writeln!(self.out, "{name}: it is not built; needed: cargo build --release --workspace")?;
                 continue;
             }
             let mut times = Vec::new();
@@ -276,12 +279,12 @@ fn cube(depth: f64, albedo: f64) -> Result<Scene> {
     ))
 }
 
-fn amounts(global: u64, volume: u64, has_beams: bool) -> MapSettings {
+fn amounts(global: u64, volume: u64) -> MapSettings {
     MapSettings {
         global: Amount::Stored(global),
         caustic: Amount::Emitted(1),
         volume: Amount::Stored(volume),
-        has_beams,
+        has_beams: false,
         indirect: Indirect::Seen,
         seed: 1,
         replicate: 0,
@@ -296,7 +299,7 @@ fn picture(scene: &Scene, width: u32, samples: u64) -> Result<f64> {
 
 fn from_maps(scene: &Scene) -> Result<()> {
     let camera = scene.camera().context("no camera")?.with_size(96, 96)?;
-    let maps = fill(scene, &amounts(50_000, 50_000, false), &NoProgress)?;
+    let maps = fill(scene, &amounts(50_000, 50_000), &NoProgress)?;
     let settings = Settings::for_size(2.0, 100)?;
     let photons = Method::Photons(Mapper::new(scene, &maps, &settings));
     black_box(photons.render(&camera, 1, STREAMS, &NoProgress)?);
@@ -324,8 +327,8 @@ fn map(count: u64) -> Result<PhotonMap> {
 /// Seconds of a gather of the k nearest, along lines through the map: places of one after the other are neighbours.
 fn gathers(map: &PhotonMap, k: usize) -> Result<f64> {
     let estimator = Estimator::new(Kernel::Uniform, Gather::nearest(k, 10.0)?);
-    // As many photons are looked at, whatever k.
-    let lines = (QUERIES / 100 * 100 / (k as u64).max(100)).max(1);
+    // As many photons are looked at from k = 100 on.
+    let lines = (QUERIES / (k as u64).max(100)).max(1);
     let mut stream = Stream::new(2, Purpose::Synthetic, 0, 0);
     let ways: Vec<_> =
         (0..lines).map(|_| [DVec3::from(stream.triple()), DVec3::from(stream.triple())]).collect();

@@ -105,8 +105,9 @@ pub fn for_each_photon(
     })
 }
 
+/// How many of a row were found.
 #[inline(always)]
-fn number(neighbors: &Neighbors<'_>) -> usize {
+pub(super) fn number(neighbors: &Neighbors<'_>) -> usize {
     neighbors.inside().to_bitmask().count_ones() as usize
 }
 

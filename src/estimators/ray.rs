@@ -1,12 +1,12 @@
 //! Points along a ray: what a medium scatters towards the near end of a ray, from all photons about the ray at once.
 
 use super::boundary::{Beside, Boundary};
-use super::point::LaneSum;
+use super::point::{LaneSum, number};
 use super::{CosinePairs, Directional, Kernel, OwnEnds, Transmitted};
 use crate::Spectrum;
 use crate::math::{Interval, Positive, Ray, cosine_pair};
 use crate::medium::Medium;
-use crate::photons::tree::{AlongRow, Radii};
+use crate::photons::tree::{Neighbors, Radii};
 use crate::photons::{Photon, PhotonMap};
 use crate::scene::decay;
 use glam::DVec3;
@@ -82,7 +82,7 @@ impl RayEstimator {
                 if let Some(rows) = &mut rows {
                     let parts = beside.clear_parts(span, radius, self.is_clipped);
                     let way = (ray, span, radius);
-                    if map.along_by_rows(way, &parts, &mut visit, |row| rows.add(&row)) {
+                    if map.along_by_rows(way, &parts, &mut visit, |row, feet| rows.add(&row, feet)) {
                         return true;
                     }
                 }
@@ -246,12 +246,12 @@ impl<'a> Rows<'a> {
     }
 
     #[inline(always)]
-    fn add(&mut self, row: &AlongRow<'_>) {
+    fn add(&mut self, row: &Neighbors<'_>, feet: f32x8) {
         let inside = row.inside();
-        self.found += inside.to_bitmask().count_ones() as usize;
+        self.found += number(row);
         let pairs = CosinePairs { dir: row.dir(), wo: self.wo, inside };
         let value = self.kernel.profiles(row.u2()) * self.medium.phase().values(pairs);
-        let weight = |rate: f32| inside & (value * (row.feet() * f32x8::splat(-rate)).exp());
+        let weight = |rate: f32| inside & (value * (feet * f32x8::splat(-rate)).exp());
         if self.is_grey {
             self.sum.add(weight(self.rates[0]), row.power());
         } else {

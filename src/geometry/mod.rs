@@ -111,7 +111,7 @@ impl Shape {
         }
     }
 
-    /// The planes of all faces, seen from a point inside; none for a shape that is not bounded by planes alone.
+    /// The planes of all faces, seen from a point inside, in pairs that face each other; none for a shape that is not bounded by planes alone.
     pub fn faces_about(&self, p: DVec3) -> Option<Vec<Front>> {
         let face = |normal: DVec3, distance: f64| Front { normal, distance };
         match self {

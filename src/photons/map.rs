@@ -1,11 +1,12 @@
 //! A photon map: the photons that one pass stored, and how many that pass emitted.
 
-use super::tree::{AlongRow, Radii};
+use super::tree::{Neighbors, Radii};
 use super::{Photon, PhotonTree, Photons, periodic};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
 use crate::transport::{NoProgress, Progress};
 use glam::{DVec2, DVec3};
+use wide::f32x8;
 
 /// Stored photons and the number **emitted** by the pass that stored them: estimates divide by that number,
 /// never by the number stored. It holds no estimator.
@@ -135,14 +136,14 @@ impl PhotonMap {
         self.in_cells((ray, span), radius, |ray, span| self.tree.along(ray, span, radius, &mut each))
     }
 
-    /// [`PhotonMap::along`], but in parts of the span, which are apart and in order, told of by rows in single precision. False, and
+    /// [`PhotonMap::along`], but in parts of the span told of by rows, as [`PhotonTree::along_by_rows`] has it. False, and
     /// nothing visited, where the map cannot tell so: in a periodic cell, or of a radius below 10^-3 of the map.
     pub fn along_by_rows(
         &self,
         way: (&Ray, Interval, f64),
         parts: &[Interval],
         mut visit: impl FnMut(Photon, f64, f64),
-        visit_row: impl FnMut(AlongRow<'_>),
+        visit_row: impl FnMut(Neighbors<'_>, f32x8),
     ) -> bool {
         let each = |place: usize, foot: f64, squared: f64| visit(self.tree.photon(place), foot, squared);
         self.period.is_none() && self.tree.along_by_rows(way, parts, each, visit_row)

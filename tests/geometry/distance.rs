@@ -55,6 +55,31 @@ fn distances_by_points_of_the_surface() {
     }
 }
 
+/// Where a ray has room about it, place by place: of solid shapes from inside and outside, and nowhere of others.
+#[test]
+fn rays_with_room() {
+    let mut stream = Stream::new(8, Purpose::Synthetic, 0, 0);
+    let mut counts = [0; 2];
+    for shape in shapes().into_iter().chain([Shape::Slab(Slab::new(-0.5, 1.0).unwrap())]) {
+        for _ in 0..300 {
+            let ray = Ray::new(DVec3::from(stream.triple()) * 3.0 - 1.5, square_to_sphere(stream.pair()));
+            let least = 0.4 * stream.unit();
+            let found = shape.interval_with_room(&ray, least);
+            for _ in 0..20 {
+                let t = 4.0 * stream.unit();
+                let is_roomy = shape.room(ray.at(t)) >= least;
+                counts[usize::from(is_roomy)] += 1;
+                assert_eq!(
+                    found.is_some_and(|part| part.start <= t && t <= part.end),
+                    is_roomy,
+                    "{shape:?} {t}"
+                );
+            }
+        }
+    }
+    assert!(counts.iter().all(|count| *count > 500), "{counts:?}");
+}
+
 /// What is between two points, where a ray ends, and what lies behind the front, by hits and points of the surface.
 #[test]
 fn ways_by_hits() {

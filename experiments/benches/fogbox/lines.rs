@@ -31,6 +31,8 @@ struct Way {
     stored: u64,
     settings: Settings,
     rounds: Vec<Round>,
+    /// Photons or beams that all rays together looked at, mean of the rounds.
+    looked_at: f64,
 }
 
 /// The marches first, then rays, then beams.
@@ -40,7 +42,8 @@ fn ways() -> Result<Vec<Way>> {
     let march = March { step: Positive::new("the step", 4.0)?, adaptive: None, ..standard.march };
     let mut ways = Vec::new();
     let mut add = |name: String, stored, volume: Estimator, march: March| {
-        ways.push(Way { name, stored, settings: Settings { volume, march, ..standard }, rounds: Vec::new() });
+        let settings = Settings { volume, march, ..standard };
+        ways.push(Way { name, stored, settings, rounds: Vec::new(), looked_at: 0.0 });
     };
     for k in [30, 100] {
         let volume = Estimator { gather: Gather::nearest(k, 1.0)?, ..standard.volume };
@@ -64,8 +67,9 @@ fn layer(film: &Film) -> Vec<f64> {
     film.pixels().iter().flat_map(mean).collect()
 }
 
-/// One map, its picture of the layer, and the time of both without that of a picture that reads no volume map.
-fn round(scene: &Scene, camera: &Camera, way: &Way, replicate: u64) -> Result<Round> {
+/// One map, its picture of the layer, and the time of both without that of a picture that reads no volume map; beside it how many
+/// photons were looked at.
+fn round(scene: &Scene, camera: &Camera, way: &Way, replicate: u64) -> Result<(Round, f64)> {
     let settings = &way.settings;
     let filling = MapSettings {
         global: Amount::Emitted(1),
@@ -77,12 +81,13 @@ fn round(scene: &Scene, camera: &Camera, way: &Way, replicate: u64) -> Result<Ro
         replicate,
     };
     let streams = Streams { seed: 1, replicate };
-    let mut without = None;
+    let (mut without, mut looked_at) = (None, 0);
     let mut pixels = Vec::new();
     let with = timed(|| {
         let mut maps = fill(scene, &filling, &NoProgress)?;
         let photons = Method::Photons(Mapper::new(scene, &maps, settings));
-        let film = photons.render(camera, SAMPLES, streams, &NoProgress)?;
+        let mut film = Film::new(camera.width(), camera.height());
+        looked_at = photons.extend(&mut film, camera, SAMPLES, streams, &NoProgress)?.volume.found;
         pixels = layer(&film);
         (maps.volume, maps.beams) = (None, None);
         let start = cpu_time::ThreadTime::now();
@@ -91,7 +96,7 @@ fn round(scene: &Scene, camera: &Camera, way: &Way, replicate: u64) -> Result<Ro
         without = Some(start.elapsed().as_secs_f64());
         Ok(film)
     })?;
-    Ok(Round { pixels, seconds: with.seconds - 2.0 * without.unwrap_or(0.0) })
+    Ok((Round { pixels, seconds: with.seconds - 2.0 * without.unwrap_or(0.0) }, looked_at as f64))
 }
 
 /// Prints the efficiency of each way, and over that of the best march.
@@ -111,20 +116,22 @@ pub fn compare(out: &mut impl Write, scene: &Scene, camera: &Camera) -> Result<(
     let error_of_truth = squared_errors(&paths).iter().sum::<f64>() / (count * count) as f64;
     writeln!(
         out,
-        "\nLight scattered twice and more in media, {POINTS} photons or {BEAMS} flights a map, {ROUNDS} maps; errors in % of the mean, \
+        "\nLight scattered twice and more in media, {POINTS} photons or {BEAMS} flights a map and how many a ray looks at, {ROUNDS} maps; errors in % of the mean, \
          reference +- {:.2} %",
         100.0 * error_of_truth.sqrt() / mean
     )?;
     writeln!(
         out,
-        "{:26} {:>8} {:>8} {:>8} {:>12} {:>24}",
-        "", "s", "error", "bias", "1/(MSE s)", "times the best march"
+        "{:26} {:>8} {:>8} {:>8} {:>8} {:>12} {:>24}",
+        "", "s", "a ray", "error", "bias", "1/(MSE s)", "times the best march"
     )?;
     let mut ways = ways()?;
     // In turn.
     for replicate in 0..ROUNDS as u64 {
         for way in &mut ways {
-            way.rounds.push(round(scene, camera, way, replicate)?);
+            let (round, looked_at) = round(scene, camera, way, replicate)?;
+            way.rounds.push(round);
+            way.looked_at += looked_at / ROUNDS as f64;
         }
     }
     let off = |round: &Round| {
@@ -154,9 +161,10 @@ pub fn compare(out: &mut impl Write, scene: &Scene, camera: &Camera) -> Result<(
         ratios.sort_unstable_by(f64::total_cmp);
         writeln!(
             out,
-            "{:26} {:8.3} {:8.2} {:8.2} {:12.1} {:9.2} ({:5.2} to {:5.2})",
+            "{:26} {:8.3} {:8.0} {:8.2} {:8.2} {:12.1} {:9.2} ({:5.2} to {:5.2})",
             way.name,
             average(&mut way.rounds.iter().map(|round| round.seconds)),
+            way.looked_at / (WIDTH * WIDTH) as f64,
             percent(error),
             percent(error - between),
             efficiency(which, &all),

@@ -1,7 +1,7 @@
 //! What comes near a stretch of a ray: looked for once, and asked at every place of it.
 
 use super::Boundary;
-use super::visible::{ALONG, Surroundings, least_of_disc};
+use super::visible::{ALONG, Surroundings, least_of_disc, line_on_disc};
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_before;
 use crate::geometry::{Cuboid, Front, Shape};
@@ -65,11 +65,9 @@ impl<'a> Beside<'a> {
                 }
                 let (mut lines, mut count) = ([(DVec2::ZERO, 0.0); FACES], 0);
                 for face in faces {
-                    let across = -DVec2::new(face.normal.dot(self.axes.x), face.normal.dot(self.axes.y));
-                    let sine = across.length();
-                    let away = face.height(self.ray.dir * along).max(0.0) / (radius * sine);
-                    if sine > ALONG && away < 1.0 {
-                        lines[count] = (across / sine, away);
+                    let here = Front { distance: face.height(self.ray.dir * along), ..*face };
+                    if let Some(line) = line_on_disc(&here, &self.axes, radius) {
+                        lines[count] = line;
                         count += 1;
                     }
                 }

@@ -60,6 +60,15 @@ pub(super) fn least_of_disc(kernel: Kernel, seen: f64) -> f64 {
     (kernel.within_disc(seen) / f64::from(ACROSS)).max(f64::MIN_POSITIVE)
 }
 
+/// The line in which a plane cuts a disc about the point that it is before, across `axes.z`: a unit vector towards it and its distance
+/// over the radius. None beyond the disc, and of a plane along it, whose centre rounding may put just behind that.
+pub(super) fn line_on_disc(plane: &Front, axes: &Frame, radius: f64) -> Option<(DVec2, f64)> {
+    let across = -DVec2::new(plane.normal.dot(axes.x), plane.normal.dot(axes.y));
+    let sine = across.length();
+    let away = plane.distance.max(0.0) / (radius * sine);
+    (sine > ALONG && away < 1.0).then(|| (across / sine, away))
+}
+
 /// A body near a point.
 struct Body<'a> {
     shape: &'a Shape,
@@ -260,14 +269,8 @@ impl<'a> Surroundings<'a> {
             return share_in_circle(kernel, circle / radius, away / radius).max(least);
         }
         if let Some(planes) = self.planes(radius) {
-            let line = |front: &Front| {
-                let across = -DVec2::new(front.normal.dot(axes.x), front.normal.dot(axes.y));
-                // Of a plane along the disc's own, rounding may put the centre just behind it.
-                let sine = across.length();
-                let away = front.distance.max(0.0) / (radius * sine);
-                (sine > ALONG && away < 1.0).then(|| (across / sine, away))
-            };
-            let lines: Vec<(DVec2, f64)> = planes.iter().filter_map(line).collect();
+            let lines: Vec<(DVec2, f64)> =
+                planes.iter().filter_map(|plane| line_on_disc(plane, &axes, radius)).collect();
             return share_before(kernel, &lines).max(least);
         }
         let (sin, cos) = sin_cos(TAU * self.stream(salt).unit() / f64::from(ACROSS));

@@ -1,58 +1,15 @@
 //! Every photon within a distance of a stretch of a ray: boxes that come so near, then their photons one by one, or eight at a time.
 
 use super::PhotonTree;
-use super::block::{ROW, Row};
+use super::block::ROW;
 use super::cylinder::Cylinder;
 use super::scratch::with_scratch;
-use super::within::bits;
+use super::within::{Neighbors, bits};
 use crate::math::{Interval, Ray};
 use wide::f32x8;
 
 /// Radii below this are asked in double precision \[units\]: single precision places a photon about the ray within some 10^-7.
 const FINE: f64 = 1.0 / 1024.0;
-
-/// Photons of one row about a ray, in single precision.
-#[derive(Debug, Clone, Copy)]
-pub struct AlongRow<'a> {
-    tree: &'a PhotonTree,
-    row: usize,
-    feet: f32x8,
-    u2: f32x8,
-    inside: f32x8,
-}
-
-impl<'a> AlongRow<'a> {
-    /// How far along the ray their feet are from [`PhotonTree::middle_of`] the ray, over [`PhotonTree::unit`]. Lanes that were not found
-    /// mean nothing.
-    #[inline(always)]
-    pub fn feet(&self) -> f32x8 {
-        self.feet
-    }
-
-    /// Squared distances from the ray over the squared radius, at most 1.
-    #[inline(always)]
-    pub fn u2(&self) -> f32x8 {
-        self.u2
-    }
-
-    /// Which lanes were found: all bits set, or none.
-    #[inline(always)]
-    pub fn inside(&self) -> f32x8 {
-        self.inside
-    }
-
-    /// Powers \[W\], an array a channel.
-    #[inline(always)]
-    pub fn power(&self) -> &'a Row {
-        &self.tree.powers[self.row]
-    }
-
-    /// Directions of travel, an array a coordinate.
-    #[inline(always)]
-    pub fn dir(&self) -> &'a Row {
-        &self.tree.dirs[self.row]
-    }
-}
 
 impl PhotonTree {
     /// Visits every photon at most `radius` \[L\] from a ray whose foot on it lies in `span`, its start included and its end not:
@@ -68,14 +25,15 @@ impl PhotonTree {
         }
     }
 
-    /// The same where parts of the span, in order and apart, are told of by rows in single precision, and the rest one by one. False, and
-    /// nothing visited, where single precision is too coarse.
+    /// The same where parts of the span, in order and apart, are told of by rows in single precision, and the rest one by one: with each
+    /// row how far along the ray its feet are from [`PhotonTree::middle_of`] the ray, over [`PhotonTree::unit`]; lanes that were not found
+    /// mean nothing. False, and nothing visited, where single precision is too coarse.
     pub fn along_by_rows(
         &self,
         (ray, span, radius): (&Ray, Interval, f64),
         parts: &[Interval],
         visit: impl FnMut(usize, f64, f64),
-        mut visit_row: impl FnMut(AlongRow<'_>),
+        mut visit_row: impl FnMut(Neighbors<'_>, f32x8),
     ) -> bool {
         if parts.is_empty() || self.units.shrink(radius) < FINE {
             return false;
@@ -84,16 +42,15 @@ impl PhotonTree {
         let mut ask = self.asked((ray, span, radius), visit);
         let parts: Vec<[f32x8; 2]> = parts.iter().map(|part| cylinder.stretch(&self.units, part)).collect();
         let squared_radius = self.units.shrink(radius) * self.units.shrink(radius);
-        let [r2, inverse_r2] =
-            [squared_radius, 1.0 / squared_radius].map(|number| f32x8::splat(number as f32));
+        let (r2, inverse_r2) = (f32x8::splat(squared_radius as f32), (1.0 / squared_radius) as f32);
         self.about(&cylinder, |first, squared, near| {
             let feet = cylinder.feet(&self.positions[first / (2 * ROW)][first / ROW % 2]);
             let is_in = |[start, end]: &[f32x8; 2]| feet.simd_ge(*start) & feet.simd_lt(*end);
             let in_parts = parts.iter().map(is_in).fold(f32x8::ZERO, |all, part| all | part);
             let inside = in_parts & squared.simd_le(r2);
             if inside.any() {
-                let u2 = (squared * inverse_r2).fast_min(f32x8::ONE);
-                visit_row(AlongRow { tree: self, row: first / ROW, feet, u2, inside });
+                let row = first / ROW;
+                visit_row(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 }, feet);
             }
             bits((near & !in_parts).to_bitmask()).for_each(|lane| ask(first + lane));
         });
@@ -228,12 +185,11 @@ mod tests {
             (ray, span, radius),
             &parts,
             |place, foot, squared| one_by_one.push((place, foot, squared)),
-            |row| {
-                for lane in bits(row.inside().to_bitmask()) {
-                    let place = row.row * ROW + lane;
+            |row, feet| {
+                for (lane, place) in row.places() {
                     assert_eq!(row.power()[1].as_array()[lane], tree.photon(place).power.y);
                     assert_eq!(row.dir()[2].as_array()[lane], tree.photon(place).dir.z);
-                    let foot = middle + unit * f64::from(row.feet().as_array()[lane]);
+                    let foot = middle + unit * f64::from(feet.as_array()[lane]);
                     let squared = f64::from(row.u2().as_array()[lane]) * radius * radius;
                     rows.push((place, foot, squared));
                 }

@@ -32,6 +32,12 @@ pub(in crate::photons) struct Cylinder {
     middle: f64,
 }
 
+/// A distance along a ray \[L\] from its point nearest the middle of the map, `middle` along it \[units\]: feet lie no farther from there
+/// than the corners of the map do from its middle.
+fn along(units: &Units, middle: f64, t: f64) -> f64 {
+    (units.shrink(t) - middle).clamp(-2.0, 2.0)
+}
+
 impl Cylinder {
     /// The stretch as boxes are asked about it; none where single precision does not tell.
     pub(in crate::photons) fn new(units: &Units, ray: &Ray, span: Interval, radius: f64) -> Option<Self> {
@@ -42,8 +48,7 @@ impl Cylinder {
         if !(nearest.length() <= FAR && radius <= FAR) {
             return None;
         }
-        // Feet lie no farther from the nearest point than the corners of the map do from its middle.
-        let along = |t: f64| (units.shrink(t) - middle).clamp(-2.0, 2.0);
+        let along = |t: f64| along(units, middle, t);
         let dir = ray.dir.to_array().map(|d| if d.abs() < LEAST { LEAST.copysign(d) } else { d });
         Some(Cylinder {
             origin: nearest.as_vec3().to_array(),
@@ -145,7 +150,7 @@ impl Cylinder {
 
     /// A part of the ray from end to end, as [`Cylinder::feet`] count, in all lanes.
     pub(super) fn stretch(&self, units: &Units, part: &Interval) -> [f32x8; 2] {
-        [part.start, part.end].map(|t| f32x8::splat((units.shrink(t) - self.middle).clamp(-2.0, 2.0) as f32))
+        [part.start, part.end].map(|t| f32x8::splat(along(units, self.middle, t) as f32))
     }
 
     /// How far along the ray the feet of eight positions are.

@@ -21,7 +21,6 @@ use columns::{Columns, Entry, rows};
 use glam::{DVec3, Vec3};
 use wide::f32x8;
 
-pub use along::AlongRow;
 pub use block::ROW;
 pub(in crate::photons) use block::{Row, cross, dot};
 pub(in crate::photons) use boxes::{Boxes, Extent, levels_of};
