@@ -1,7 +1,7 @@
 //! Points along a ray: what a medium scatters towards the near end of a ray, from all photons about the ray at once.
 
-use super::boundary::{Beside, Boundary};
-use super::point::{LaneSum, number};
+use super::boundary::{Beside, BesideRows, Boundary};
+use super::point::LaneSum;
 use super::{CosinePairs, Directional, Kernel, OwnEnds, Transmitted};
 use crate::Spectrum;
 use crate::math::{Interval, Positive, Ray, cosine_pair};
@@ -32,7 +32,7 @@ pub struct RayEstimator {
     pub kernel: Kernel,
     /// Photons farther from the ray than this do not count \[L\]: the radius of all, or the largest that one of them has.
     pub radius: Positive,
-    /// Whether what a photon brings is divided by the part of the disc about its foot that is in the medium and seen from there.
+    /// Whether what a photon brings is divided by the part of the disc about its foot, or nearly there, that is in the medium and seen.
     pub is_clipped: bool,
 }
 
@@ -54,14 +54,18 @@ impl RayEstimator {
     /// # Arguments
     /// `ray` looks away from the receiver, so that light travels against it; `span` in the `medium`, and `boundary` what is about
     /// it; `passed` the part of the light from a distance along the ray \[L\] that reaches the near end. Where it has a closed form
-    /// ([`Transmitted::decay`]) photons far from all faces and bodies are summed by rows, in single precision: within some 10^-6
+    /// ([`Transmitted::decay`]) photons are summed by rows, in single precision, within some 10^-6, but for those beside bodies that are
+    /// not flat and beside other media; near faces and bodies the part of the disc is then the mean over a stretch of an eighth of
+    /// the radius. One by one beside anything where the stretch is longer than 128 radii, and everywhere where the radius is below
+    /// 10^-3 of the map or the map is thicker than some 16 mean free paths
     ///
     /// # Returns
     /// not a number in a periodic cell that holds no copies as far as the radius, or of a stretch without end there
     ///
     /// # Limits
     /// the stretch is cut square at its ends: if it is not clipped the light of a length of (2/(3 pi)) r tan(theta) is missing at a
-    /// face that the ray meets aslant (uniform kernel), and what bodies beside the ray hide
+    /// face that the ray meets aslant (uniform kernel), and what bodies beside the ray hide; clipped, a photon is divided by no less
+    /// than 1/32 of the kernel within its distance, so that layers thinner than a fortieth of the radius come out too dark
     pub fn radiance(
         &self,
         map: &PhotonMap,
@@ -80,9 +84,13 @@ impl RayEstimator {
             |beside, visit| {
                 let mut visit = |photon, foot, squared| visit(photon, radius, foot, squared);
                 if let Some(rows) = &mut rows {
-                    let parts = beside.clear_parts(span, radius, self.is_clipped);
+                    let clipping = (self.kernel, radius, self.is_clipped);
+                    let mut about = BesideRows::new(beside, (map.tree(), ray, span), clipping, map.run());
+                    let parts = about.parts().to_vec();
                     let way = (ray, span, radius);
-                    if map.along_by_rows(way, &parts, &mut visit, |row, feet| rows.add(&row, feet)) {
+                    if map
+                        .along_by_rows(way, &parts, &mut visit, |row, feet| rows.add(&row, feet, &mut about))
+                    {
                         return true;
                     }
                 }
@@ -92,8 +100,8 @@ impl RayEstimator {
         match rows {
             Some(rows) => RayEstimate {
                 value: rest.value + rows.sum.total() * rows.before * self.scale(map, radius),
-                found: rest.found + rows.found,
-                ..rest
+                found: rest.found + number(rows.found),
+                rejected: rest.rejected + number(rows.told - rows.found),
             },
             None => rest,
         }
@@ -202,25 +210,32 @@ impl RayEstimator {
     }
 }
 
+/// The sum of whole numbers in lanes.
+fn number(lanes: f32x8) -> usize {
+    lanes.as_array().iter().map(|lane| *lane as usize).sum()
+}
+
 /// Optical depths of the map's unit above this are asked in double precision: exponents in single precision have 10^-7 of it.
 const THICK: f64 = 16.0;
 
 /// Exponents beyond this are those of a stretch that holds no photon.
 const NOWHERE: f64 = 64.0;
 
-/// The sum over photons about a ray by rows, of a medium that is the same everywhere and where nothing is hidden or cut off.
+/// The sum over photons about a ray by rows, of a medium that is the same everywhere.
 struct Rows<'a> {
     kernel: Kernel,
     medium: &'a Medium,
     /// Direction of travel towards the near end.
     wo: [f32; 3],
-    /// Rates of decay, over the tree's unit; one where they are the same in all channels.
-    rates: [f32; 3],
+    /// What passes from the feet, in the tree's unit; the first of them where all channels are the same.
+    decays: [Decay; 3],
     is_grey: bool,
     /// What passes from where feet count, times the albedo.
     before: Spectrum,
     sum: LaneSum,
-    found: usize,
+    /// How many photons count, and all that were told of, by lanes.
+    found: f32x8,
+    told: f32x8,
 }
 
 impl<'a> Rows<'a> {
@@ -237,25 +252,61 @@ impl<'a> Rows<'a> {
             kernel: of.kernel,
             medium,
             wo: (-ray.dir).as_vec3().to_array(),
-            rates: rate.0.to_array().map(|rate| (rate * unit) as f32),
+            decays: rate.0.to_array().map(|rate| Decay::new(rate * unit)),
             is_grey: rate.is_grey(),
             before: decay(depth) * medium.albedo(ray.at(start)),
             sum: LaneSum::default(),
-            found: 0,
+            found: f32x8::ZERO,
+            told: f32x8::ZERO,
         })
     }
 
     #[inline(always)]
-    fn add(&mut self, row: &Neighbors<'_>, feet: f32x8) {
-        let inside = row.inside();
-        self.found += number(row);
-        let pairs = CosinePairs { dir: row.dir(), wo: self.wo, inside };
-        let value = self.kernel.profiles(row.u2()) * self.medium.phase().values(pairs);
-        let weight = |rate: f32| inside & (value * (feet * f32x8::splat(-rate)).exp());
+    fn add(&mut self, row: &Neighbors<'_>, feet: f32x8, about: &mut BesideRows<'_>) {
+        let (kept, shares) = about.kept(row, feet);
+        self.found += kept & f32x8::ONE;
+        self.told += row.inside() & f32x8::ONE;
+        let pairs = CosinePairs { dir: row.dir(), wo: self.wo, inside: kept };
+        let value = self.kernel.profiles(row.u2()) * self.medium.phase().values(pairs) / shares;
+        let weight = |decay: &Decay| kept & (value * decay.of(feet));
         if self.is_grey {
-            self.sum.add(weight(self.rates[0]), row.power());
+            self.sum.add(weight(&self.decays[0]), row.power());
         } else {
-            self.sum.add_each(self.rates.map(weight), row.power());
+            self.sum.add_each(self.decays.each_ref().map(weight), row.power());
         }
+    }
+}
+
+/// exp(-rate t) in single precision.
+#[derive(Clone, Copy)]
+struct Decay {
+    /// The rate over 2^squarings.
+    rate: f32,
+    squarings: u32,
+}
+
+impl Decay {
+    /// For |t| up to 2: what is squared is within [exp(-1/8), exp(1/8)].
+    fn new(rate: f64) -> Self {
+        let (mut rate, mut squarings) = (-rate, 0);
+        while rate < -0.0625 {
+            rate *= 0.5;
+            squarings += 1;
+        }
+        Decay { rate: rate as f32, squarings }
+    }
+
+    /// Taylor's series to the fifth power: its remainder is below 6 x 10^-9, and what rounding leaves doubles with each squaring: 10^-5 in the thickest.
+    #[inline(always)]
+    fn of(&self, t: f32x8) -> f32x8 {
+        let x = t * f32x8::splat(self.rate);
+        let x2 = x * x;
+        // By pairs, which do not wait for each other.
+        let pair = |even: f32, odd: f32| f32x8::splat(1.0 / even) + x * f32x8::splat(1.0 / odd);
+        let mut power = pair(1.0, 1.0) + x2 * (pair(2.0, 6.0) + x2 * pair(24.0, 120.0));
+        for _ in 0..self.squarings {
+            power *= power;
+        }
+        power
     }
 }

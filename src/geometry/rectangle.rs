@@ -97,15 +97,15 @@ impl Rectangle {
         self.inside(p) >= across
     }
 
-    pub(super) fn corner(&self) -> DVec3 {
+    pub(crate) fn corner(&self) -> DVec3 {
         self.corner
     }
 
-    pub(super) fn u(&self) -> DVec3 {
+    pub(crate) fn u(&self) -> DVec3 {
         self.u
     }
 
-    pub(super) fn v(&self) -> DVec3 {
+    pub(crate) fn v(&self) -> DVec3 {
         self.v
     }
 

@@ -262,7 +262,8 @@ fn a_uniform_source_comes_out_right_beside_walls() {
 }
 
 /// Where the medium is the same everywhere rows of photons are read at once: as one by one, with every kernel, phase functions of every
-/// kind, colours or none, clipped or not, in every solid shape, alone and with a wall and a hole, before, in and behind the medium.
+/// kind, colours or none, clipped or not, in every solid shape, alone, with walls, a block, a ball and a hole, before, in and behind the
+/// medium. Clipped near walls they are divided by the share of a stretch, not of their own foot: right in the mean.
 #[test]
 fn rows_are_read_as_photons_are_one_by_one() {
     let synthetic = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::ONE).unwrap();
@@ -270,21 +271,37 @@ fn rows_are_read_as_photons_are_one_by_one() {
     let wall = Rectangle::new(DVec3::new(0.3, 0.0, 0.3), DVec3::Y, DVec3::new(0.4, 0.0, 0.25)).unwrap();
     let walls = [Shape::Rectangle(wall)];
     let holes = [cuboid(DVec3::new(0.4, 0.5, 0.1), DVec3::new(0.7, 0.8, 0.4))];
+    // Far larger than the map, but for one edge.
+    let large =
+        Rectangle::new(DVec3::new(-1e7, 0.6, 0.75), DVec3::X * 1e7 + 0.4 * DVec3::X, DVec3::Y * 1e7).unwrap();
+    let block = cuboid(DVec3::new(0.6, 0.2, 0.5), DVec3::new(0.9, 0.4, 0.8));
+    let blocks = [walls[0].clone(), block, Shape::Rectangle(large)];
+    let ball = Shape::Sphere(Sphere::new(DVec3::new(0.3, 0.7, 0.7), 0.15).unwrap());
+    let bodies = [&blocks[..], &[ball]].concat();
     let shapes = [
         cuboid(DVec3::ZERO, DVec3::ONE),
         Shape::Sphere(Sphere::new(DVec3::splat(0.5), 0.5).unwrap()),
         Shape::Slab(Slab::new(0.1, 0.7).unwrap()),
     ];
     let mut stream = Stream::new(4, Purpose::Synthetic, 0, 0);
-    let (mut read, mut by_rows) = (0, 0);
+    let (mut read, mut by_rows, mut rejected) = (0, 0, 0);
+    let (mut clipped, mut within, mut all) = (Moments::new(), 0, 0);
     for (trial, phase) in Phase::specimens().into_iter().enumerate() {
         let sigma_t = [Spectrum::ONE, Spectrum::rgb(0.3, 4.0, 1.0), Spectrum::rgb(0.0, 12.0, 0.1)][trial % 3];
         let medium =
             Medium::Homogeneous(Homogeneous::new(sigma_t, Spectrum::rgb(0.5, 0.9, 0.7), phase).unwrap());
-        for (which, shape) in shapes.iter().enumerate() {
+        for (which, shape) in (0..6).flat_map(|_| &shapes).enumerate() {
             let known = Boundary::of(shape).unwrap();
-            let among = [known, known.about(&walls), known.among(&holes).about(&walls), Boundary::UNKNOWN];
-            let boundary = &among[(trial + which) % 4];
+            let among = [
+                known,
+                known.about(&walls),
+                known.about(&blocks),
+                known.about(&bodies),
+                known.among(&holes).about(&walls),
+                Boundary::UNKNOWN,
+                Boundary::UNKNOWN.about(&blocks),
+            ];
+            let boundary = &among[(trial + which) % among.len()];
             let origin = DVec3::from(stream.triple()) * 3.0 - 1.0;
             let ray = Ray::new(origin, (DVec3::from(stream.triple()) - origin).normalize());
             let Some(span) = shape.interval(&ray) else { continue };
@@ -300,14 +317,30 @@ fn rows_are_read_as_photons_are_one_by_one() {
                 // A photon at the edge may count by one and not by the other.
                 assert!(rows.found.abs_diff(single.found) <= 1, "{what}: {rows:?} {single:?}");
                 assert!(rows.rejected.abs_diff(single.rejected) <= 1, "{what}: {rows:?} {single:?}");
-                if rows.found == single.found {
-                    // Exponents up to 16 sqrt 3 in single precision, and a peak's third power of an angle of 10^-2 and more.
-                    let off = (rows.value - single.value).map(f64::abs).max();
-                    assert!(off <= 2e-5 * single.value.max(), "{what}: {rows:?} {single:?}");
+                rejected += rows.rejected;
+                if rows.found != single.found || single.found == 0 {
+                    continue;
+                }
+                let off = (rows.value - single.value).map(f64::abs).max() / single.value.max();
+                if is_clipped && off > 3e-4 {
+                    // Where a ray enters a ball the part of a disc grows from nothing, and one photon decides; it may by its phase too.
+                    if which % 3 != 1 {
+                        assert!(off <= 0.3, "{what}: {rows:?} {single:?}");
+                        clipped.push(rows.value[1] / single.value[1]);
+                    }
+                } else {
+                    // Directions in single precision, whose angles of 10^-3 and more a peak has to the third power.
+                    assert!(off <= 3e-4, "{what}: {rows:?} {single:?}");
+                    within += usize::from(!is_clipped && off <= 2e-5);
+                    all += usize::from(!is_clipped);
                 }
             }
         }
     }
+    assert!(100 * within > 98 * all, "{within} of {all}");
+    assert!(rejected > 500, "{rejected}");
+    assert!(clipped.n() > 50 && clipped.std_error() < 1e-3, "{clipped:?}");
+    assert!((clipped.mean() - 1.0).abs() < 1e-3 + 3.0 * clipped.std_error(), "{clipped:?}");
     assert!(read > 10_000, "{read}");
     // The last bits tell whether rows were read at all.
     assert!(by_rows > 100, "{by_rows}");

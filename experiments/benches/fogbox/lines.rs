@@ -21,7 +21,7 @@ const POINTS: u64 = 65_000;
 const BEAMS: u64 = 5_000;
 const SAMPLES: u64 = 1;
 /// Radii about rays [mean free paths are 2].
-const RADII: [f64; 3] = [0.05, 0.1, 0.2];
+const RADII: [f64; 3] = [0.1, 0.2, 0.3];
 /// Paths of the reference: samples a pixel of each of its rounds.
 const REFERENCE: (usize, u64) = (8, 512);
 
@@ -54,6 +54,11 @@ fn ways() -> Result<Vec<Way>> {
         let of_rays = standard.volume.along_rays(Positive::new("the radius", radius)?);
         add(format!("points about rays, r = {radius}"), POINTS, of_rays, march);
     }
+    // The best march and the best radius with twice the photons.
+    let twice = Estimator { gather: Gather::nearest(200, 1.0)?, ..standard.volume };
+    add("march, k = 200, twice".into(), 2 * POINTS, twice, standard.march);
+    let of_rays = standard.volume.along_rays(Positive::new("the radius", 0.2)?);
+    add("points, r = 0.2, twice".into(), 2 * POINTS, of_rays, march);
     for radius in RADII {
         let of_beams = standard.volume.along_beams(Positive::new("the radius", radius)?);
         add(format!("beams, r = {radius}"), BEAMS, of_beams, march);
@@ -116,7 +121,7 @@ pub fn compare(out: &mut impl Write, scene: &Scene, camera: &Camera) -> Result<(
     let error_of_truth = squared_errors(&paths).iter().sum::<f64>() / (count * count) as f64;
     writeln!(
         out,
-        "\nLight scattered twice and more in media, {POINTS} photons or {BEAMS} flights a map and how many a ray looks at, {ROUNDS} maps; errors in % of the mean, \
+        "\nLight scattered twice and more in media, {POINTS} photons, twice as many, or {BEAMS} flights a map and how many a ray looks at, {ROUNDS} maps; errors in % of the mean, \
          reference +- {:.2} %",
         100.0 * error_of_truth.sqrt() / mean
     )?;

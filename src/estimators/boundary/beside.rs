@@ -1,10 +1,11 @@
 //! What comes near a stretch of a ray: looked for once, and asked at every place of it.
 
 use super::Boundary;
+use super::sheets::Sheets;
 use super::visible::{ALONG, Surroundings, least_of_disc, line_on_disc};
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_before;
-use crate::geometry::{Cuboid, Front, Shape};
+use crate::geometry::{Cuboid, Front, Rectangle, Shape};
 use crate::math::{Frame, Interval, Ray};
 use glam::{DVec2, DVec3};
 
@@ -136,21 +137,42 @@ impl<'a> Beside<'a> {
             Some(medium) => medium.interval_with_room(self.ray, BEYOND * radius),
             None => Some(span),
         };
-        let Some(mut rest) = inner.and_then(|inner| inner.intersection(span)) else { return Vec::new() };
-        let mut near: Vec<Interval> = self.bodies.iter().chain(&self.later).map(|(part, _)| *part).collect();
-        near.sort_unstable_by(|a, b| a.start.total_cmp(&b.start));
-        let mut parts = Vec::new();
-        for part in near {
-            if part.start > rest.start {
-                parts.push(Interval { start: rest.start, end: part.start.min(rest.end) });
-            }
-            rest.start = rest.start.max(part.end);
-            if rest.start >= rest.end {
-                return parts;
-            }
-        }
-        parts.push(rest);
-        parts
+        let rest = inner.and_then(|inner| inner.intersection(span));
+        rest.map_or(Vec::new(), |rest| without(rest, self.bodies.iter().chain(&self.later)))
+    }
+
+    /// Parts of the stretch, in order and apart, near which there are no other bodies than flat ones; none where photons may be of another
+    /// medium.
+    pub fn flat_parts(&self, span: Interval) -> Option<Vec<Interval>> {
+        let is_flat = |shape: &Shape| matches!(shape, Shape::Rectangle(_) | Shape::Cuboid(_));
+        let others = self.bodies.iter().filter(|(_, body)| !is_flat(body)).chain(&self.later);
+        self.boundary.is_only.then(|| without(span, others))
+    }
+
+    /// What parts discs in [`Beside::flat_parts`], as the ray has it; none where the medium's faces are not planes.
+    pub(super) fn sheets(&self) -> Option<Sheets> {
+        let faces = match (self.boundary.medium, &self.faces) {
+            (Some(_), None) => return None,
+            (_, faces) => faces.clone().unwrap_or_default(),
+        };
+        Some(Sheets::new(self.ray, self.rectangles().map(|(_, rectangle)| rectangle), faces))
+    }
+
+    /// The ray's place at a distance along it \[L\].
+    pub fn place(&self, along: f64) -> DVec3 {
+        self.ray.at(along)
+    }
+
+    /// The rectangles of flat bodies, each with the part of the line where it may be near.
+    pub fn rectangles(&self) -> impl Iterator<Item = (Interval, Rectangle)> {
+        self.bodies.iter().flat_map(|(part, body)| {
+            let rectangles = match body {
+                Shape::Rectangle(rectangle) => vec![*rectangle],
+                Shape::Cuboid(cuboid) => cuboid.faces(),
+                _ => Vec::new(),
+            };
+            rectangles.into_iter().map(|rectangle| (*part, rectangle))
+        })
     }
 
     /// Whether everything within a radius of the place at a distance along the ray is of the medium and seen, as far as boxes tell.
@@ -176,6 +198,24 @@ impl<'a> Beside<'a> {
         let shapes = (self.bodies.iter().filter_map(at_hand), self.later.iter().filter_map(at_hand));
         Surroundings::among(self.boundary, shapes, (place, place), reach)
     }
+}
+
+/// What is left of a stretch without some parts, in order and apart.
+fn without<'a>(mut rest: Interval, parts: impl Iterator<Item = &'a (Interval, &'a Shape)>) -> Vec<Interval> {
+    let mut parts: Vec<Interval> = parts.map(|(part, _)| *part).collect();
+    parts.sort_unstable_by(|a, b| a.start.total_cmp(&b.start));
+    let mut left = Vec::new();
+    for part in parts {
+        if part.start > rest.start {
+            left.push(Interval { start: rest.start, end: part.start.min(rest.end) });
+        }
+        rest.start = rest.start.max(part.end);
+        if rest.start >= rest.end {
+            return left;
+        }
+    }
+    left.push(rest);
+    left
 }
 
 /// Both ends included.

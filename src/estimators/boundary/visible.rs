@@ -22,7 +22,7 @@ const DIRECTIONS: u32 = 64;
 /// is 1 plus the part's relative variance.
 const ENOUGH: f64 = 24.0;
 /// Directions across a ray: at a flat wall the part is then within about a hundredth of the true one.
-const ACROSS: u32 = 32;
+pub(super) const ACROSS: u32 = 32;
 /// No more directions than this; nor is a part less than one of them.
 const MOST: u32 = 16 * DIRECTIONS;
 /// Bodies lie in or behind a plane if they reach no farther out of it than this part of the point's distance: what rounding
@@ -47,7 +47,7 @@ static SPIRAL: LazyLock<Vec<DVec3>> = LazyLock::new(|| {
 });
 
 /// Cosines and sines of directions at equal angles.
-static CIRCLE: LazyLock<[DVec2; ACROSS as usize]> = LazyLock::new(|| {
+pub(super) static CIRCLE: LazyLock<[DVec2; ACROSS as usize]> = LazyLock::new(|| {
     std::array::from_fn(|n| {
         let (sin, cos) = sin_cos(TAU * n as f64 / f64::from(ACROSS));
         DVec2::new(cos, sin)
@@ -67,6 +67,12 @@ pub(super) fn line_on_disc(plane: &Front, axes: &Frame, radius: f64) -> Option<(
     let sine = across.length();
     let away = plane.distance.max(0.0) / (radius * sine);
     (sine > ALONG && away < 1.0).then(|| (across / sine, away))
+}
+
+/// Random numbers of a place and `salt`.
+pub(super) fn stream_of(place: DVec3, salt: u64) -> Stream {
+    let [x, y, z] = place.to_array().map(f64::to_bits);
+    Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32))
 }
 
 /// A body near a point.
@@ -215,7 +221,7 @@ impl<'a> Surroundings<'a> {
         if let Some(screen) = self.screen.filter(|_| self.room >= radius && self.later.is_empty()) {
             return 1.0 - kernel.beyond_plane(screen.distance / radius);
         }
-        let mut stream = self.stream(salt);
+        let mut stream = stream_of(self.eye, salt);
         let (mut sum, mut count) = (0.0, 0);
         while sum < ENOUGH && count < MOST {
             let axes = Frame::new(warp::square_to_sphere(stream.pair()));
@@ -228,12 +234,6 @@ impl<'a> Surroundings<'a> {
             count += DIRECTIONS;
         }
         (sum / f64::from(count)).max(1.0 / f64::from(MOST))
-    }
-
-    /// Random numbers of the place and `salt`.
-    fn stream(&self, salt: u64) -> Stream {
-        let [x, y, z] = self.eye.to_array().map(f64::to_bits);
-        Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32))
     }
 
     /// The planes before which everything is kept that is within a radius; none where more than planes parts it.
@@ -273,7 +273,7 @@ impl<'a> Surroundings<'a> {
                 planes.iter().filter_map(|plane| line_on_disc(plane, &axes, radius)).collect();
             return share_before(kernel, &lines).max(least);
         }
-        let (sin, cos) = sin_cos(TAU * self.stream(salt).unit() / f64::from(ACROSS));
+        let (sin, cos) = sin_cos(TAU * stream_of(self.eye, salt).unit() / f64::from(ACROSS));
         let (x, y) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
         let one = |to: &DVec2| self.along(&|u| kernel.within_disc(u), x * to.x + y * to.y, radius);
         (CIRCLE.iter().map(one).sum::<f64>() / f64::from(ACROSS)).max(least)

@@ -4,7 +4,7 @@ use super::PhotonTree;
 use super::block::ROW;
 use super::cylinder::Cylinder;
 use super::scratch::with_scratch;
-use super::within::{Neighbors, bits};
+use super::within::{Neighbors, bits, relative};
 use crate::math::{Interval, Ray};
 use wide::f32x8;
 
@@ -50,7 +50,8 @@ impl PhotonTree {
             let inside = in_parts & squared.simd_le(r2);
             if inside.any() {
                 let row = first / ROW;
-                visit_row(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 }, feet);
+                let u2 = relative(squared, inverse_r2);
+                visit_row(Neighbors { tree: self, row, u2, inside, share: 1.0 }, feet);
             }
             bits((near & !in_parts).to_bitmask()).for_each(|lane| ask(first + lane));
         });
@@ -87,17 +88,12 @@ impl PhotonTree {
     /// may be within the radius, rounding allowed for.
     #[inline(always)]
     fn about(&self, cylinder: &Cylinder, mut visit: impl FnMut(usize, f32x8, f32x8)) {
-        let within = cylinder.squared_radius();
+        let r2 = cylinder.squared_radius();
         with_scratch(|scratch| {
             self.descend(|boxes| cylinder.touched(boxes), scratch);
-            for &block in &scratch.touched {
-                for (half, positions) in self.positions[block as usize].iter().enumerate() {
-                    let squared = cylinder.squared_distances(positions);
-                    let near = squared.simd_le(within);
-                    if near.any() {
-                        visit((2 * block as usize + half) * ROW, squared, near);
-                    }
-                }
+            scratch.measure(self, |positions| cylinder.squared_distances(positions), r2);
+            for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
+                visit(row as usize * ROW, squared, squared.simd_le(f32x8::splat(r2)));
             }
         });
     }

@@ -60,9 +60,9 @@ impl Cylinder {
         })
     }
 
-    /// The square of the radius \[units^2\], in all lanes.
-    pub(super) fn squared_radius(&self) -> f32x8 {
-        f32x8::splat(self.radius * self.radius)
+    /// The square of the radius \[units^2\].
+    pub(super) fn squared_radius(&self) -> f32 {
+        self.radius * self.radius
     }
 
     /// Visits the place of every box of the lowest level, finest first in `levels`, that the cylinder touches with all above it.
@@ -160,6 +160,7 @@ impl Cylinder {
     }
 
     /// Squared distances of eight positions from the ray.
+    #[inline(always)]
     pub(super) fn squared_distances(&self, positions: &Row) -> f32x8 {
         let across = cross(&self.way(positions), &self.dir());
         dot(&across, &across)

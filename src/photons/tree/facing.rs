@@ -7,7 +7,7 @@ use super::boxes::Probe;
 use super::nearest::{Counted, Nearest, Shell, Sphere, share};
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
-use super::within::{Neighbors, Visit};
+use super::within::{Neighbors, Visit, relative};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -110,8 +110,7 @@ impl PhotonTree {
                             visitor.visit(Neighbors {
                                 tree: self,
                                 row,
-                                squared,
-                                inverse_r2,
+                                u2: relative(squared, inverse_r2),
                                 inside,
                                 share: 1.0,
                             });
@@ -121,8 +120,7 @@ impl PhotonTree {
                             visitor.visit(Neighbors {
                                 tree: self,
                                 row,
-                                squared,
-                                inverse_r2,
+                                u2: relative(squared, inverse_r2),
                                 inside: tied,
                                 share,
                             });
@@ -154,7 +152,13 @@ impl PhotonTree {
             let inverse_r2 = 1.0 / r2;
             for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
                 let (row, inside) = (row as usize, squared.simd_le(f32x8::splat(r2)));
-                visitor.visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 });
+                visitor.visit(Neighbors {
+                    tree: self,
+                    row,
+                    u2: relative(squared, inverse_r2),
+                    inside,
+                    share: 1.0,
+                });
             }
         });
     }

@@ -165,6 +165,11 @@ impl PhotonTree {
         self.units.absolute([0, 1, 2].map(|axis| positions[axis].as_array()[lane]))
     }
 
+    /// A point relative to the middle of the map, in its unit ([`PhotonTree::unit`]).
+    pub(crate) fn relative(&self, point: DVec3) -> DVec3 {
+        self.units.relative(point)
+    }
+
     /// Every photon, in the tree's order.
     pub fn photons(&self) -> impl Iterator<Item = Photon> + '_ {
         (0..self.stored).map(|place| self.photon(place))

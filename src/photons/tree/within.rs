@@ -14,17 +14,22 @@ use wide::f32x8;
 pub struct Neighbors<'a> {
     pub(super) tree: &'a PhotonTree,
     pub(super) row: usize,
-    pub(super) squared: f32x8,
-    pub(super) inverse_r2: f32,
+    pub(super) u2: f32x8,
     pub(super) inside: f32x8,
     pub(super) share: f32,
+}
+
+/// Squared distances over the squared radius, whose inverse is given; rounding leaves none above 1.
+#[inline(always)]
+pub(super) fn relative(squared: f32x8, inverse_r2: f32) -> f32x8 {
+    (squared * f32x8::splat(inverse_r2)).fast_min(f32x8::ONE)
 }
 
 impl<'a> Neighbors<'a> {
     /// Squared distances over the squared radius, at most 1. Lanes that were not found mean nothing.
     #[inline(always)]
     pub fn u2(&self) -> f32x8 {
-        (self.squared * f32x8::splat(self.inverse_r2)).fast_min(f32x8::ONE)
+        self.u2
     }
 
     /// Which lanes were found: all bits set, or none.
@@ -50,6 +55,12 @@ impl<'a> Neighbors<'a> {
     #[inline(always)]
     pub fn dir(&self) -> &'a Row {
         &self.tree.dirs[self.row]
+    }
+
+    /// Positions relative to the middle of the map, in its unit, an array a coordinate.
+    #[inline(always)]
+    pub(crate) fn positions(&self) -> &'a Row {
+        &self.tree.positions[self.row / 2][self.row % 2]
     }
 
     /// Lanes found, each with its photon's place in the tree's order ([`PhotonTree::photon`]).
@@ -122,14 +133,13 @@ impl PhotonTree {
             let probe = Probe::new(point.as_vec3().to_array());
             with_scratch(|scratch| {
                 self.touch(&probe, r2, scratch);
-                scratch.measure(self, &probe, r2);
+                scratch.measure(self, |positions| probe.squared_distances(positions), r2);
                 for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
                     let inside = squared.simd_le(f32x8::splat(r2));
                     visitor.visit(Neighbors {
                         tree: self,
                         row: row as usize,
-                        squared,
-                        inverse_r2,
+                        u2: relative(squared, inverse_r2),
                         inside,
                         share: 1.0,
                     });
@@ -145,7 +155,7 @@ impl PhotonTree {
         if u2 <= 1.0 {
             for (row, squared) in self.all_at(u2 as f32) {
                 let inside = squared.simd_le(f32x8::ONE);
-                visitor.visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0, inside, share: 1.0 });
+                visitor.visit(Neighbors { tree: self, row, u2: relative(squared, 1.0), inside, share: 1.0 });
             }
         }
     }
@@ -194,12 +204,11 @@ impl PhotonTree {
 }
 
 impl Scratch {
-    /// Lists the rows of the touched blocks that have photons in the ball of squared radius `r2`, and their
-    /// squared distances.
+    /// Lists the rows of the touched blocks that have photons whose squared distance is at most `r2`, with these distances.
     ///
     /// Every row is written and only those that count are kept: no branch to mispredict.
     #[inline(always)]
-    pub(super) fn measure(&mut self, tree: &PhotonTree, probe: &Probe, r2: f32) {
+    pub(super) fn measure(&mut self, tree: &PhotonTree, distances: impl Fn(&Row) -> f32x8, r2: f32) {
         let most = self.touched.len() * 2 + 1;
         if self.rows.len() < most {
             self.rows.resize(most, 0);
@@ -209,7 +218,7 @@ impl Scratch {
         let mut end = 0;
         for &block in &self.touched {
             for (half, positions) in tree.positions[block as usize].iter().enumerate() {
-                let distances = probe.squared_distances(positions);
+                let distances = distances(positions);
                 rows[end] = 2 * block + half as u32;
                 squared[end] = distances;
                 end += usize::from(distances.simd_le(f32x8::splat(r2)).to_bitmask() != 0);
