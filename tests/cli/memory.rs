@@ -93,9 +93,9 @@ fn memory_is_as_said() {
         assert!((0.75..1.12).contains(&(taken / said)), "{name}: {said} said, {taken} taken");
     }
     // Each thread has bins of its own, 9 MB, and so has what waits to be merged: how many of them are there at once is for the threads'
-    // schedule to say. Of the 85 MB that are foreseen 64 to 81 were taken.
+    // schedule to say. If the threads' work never meets it is what one takes, 57 MB of the 85 that are foreseen; 63 to 81 were taken.
     let (said, taken) = (said(&bins("2")), peak(&bins("2")));
-    assert!(taken < 1.12 * said, "{said} said, {taken} taken");
+    assert!((0.65..1.12).contains(&(taken / said)), "{said} said, {taken} taken");
     // Histories that are seen a thousand times each wait in lists of a bounded length.
     let thick = folder.file(
         "thick.toml",

@@ -2,7 +2,7 @@
 
 use super::Boundary;
 use super::sheets::Sheets;
-use super::visible::{ALONG, Surroundings, least_of_disc, line_on_disc};
+use super::visible::{ALONG, Surroundings, least_of_disc, lines_of_faces};
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_before;
 use crate::geometry::{Cuboid, Front, Rectangle, Shape};
@@ -65,12 +65,9 @@ impl<'a> Beside<'a> {
                     return Some(1.0);
                 }
                 let (mut lines, mut count) = ([(DVec2::ZERO, 0.0); FACES], 0);
-                for face in faces {
-                    let here = Front { distance: face.height(self.ray.dir * along), ..*face };
-                    if let Some(line) = line_on_disc(&here, &self.axes, radius) {
-                        lines[count] = line;
-                        count += 1;
-                    }
+                for line in lines_of_faces(faces, &self.axes, along, radius) {
+                    lines[count] = line;
+                    count += 1;
                 }
                 Some(share_before(kernel, &lines[..count]).max(least_of_disc(kernel, seen / radius)))
             }

@@ -1,6 +1,6 @@
 //! The part of a disc across a ray that is seen from its middle among flat bodies: where they cut the disc's plane they are segments.
 
-use super::visible::{ACROSS, CIRCLE, line_on_disc};
+use super::visible::{ACROSS, CIRCLE, lines_of_faces};
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_before;
 use crate::geometry::{Front, Rectangle};
@@ -71,11 +71,7 @@ impl Sheets {
     /// The part of the disc of a radius at a distance along the ray \[L\] that is in the medium and seen from its middle: exact where segments
     /// part the whole disc, and else by directions at equal angles, turned by `turn` in [0, 1) of the angle between them.
     pub fn share(&self, kernel: Kernel, along: f64, radius: f64, turn: f64) -> f64 {
-        let mut lines: Vec<(DVec2, f64)> = Vec::new();
-        for face in &self.faces {
-            let here = Front { distance: face.height(self.axes.z * along), ..*face };
-            lines.extend(line_on_disc(&here, &self.axes, radius));
-        }
+        let mut lines: Vec<(DVec2, f64)> = lines_of_faces(&self.faces, &self.axes, along, radius).collect();
         let mut segments: Vec<[DVec2; 2]> = Vec::new();
         for [a, b] in self.sheets.iter().filter_map(|sheet| sheet.segment(along)) {
             let (a, b) = (a / radius, b / radius);

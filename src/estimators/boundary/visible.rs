@@ -62,11 +62,22 @@ pub(super) fn least_of_disc(kernel: Kernel, seen: f64) -> f64 {
 
 /// The line in which a plane cuts a disc about the point that it is before, across `axes.z`: a unit vector towards it and its distance
 /// over the radius. None beyond the disc, and of a plane along it, whose centre rounding may put just behind that.
-pub(super) fn line_on_disc(plane: &Front, axes: &Frame, radius: f64) -> Option<(DVec2, f64)> {
+fn line_on_disc(plane: &Front, axes: &Frame, radius: f64) -> Option<(DVec2, f64)> {
     let across = -DVec2::new(plane.normal.dot(axes.x), plane.normal.dot(axes.y));
     let sine = across.length();
     let away = plane.distance.max(0.0) / (radius * sine);
     (sine > ALONG && away < 1.0).then(|| (across / sine, away))
+}
+
+/// The lines in which faces, as the beginning of a ray along `axes.z` has them, cut the disc at a distance along it.
+pub(super) fn lines_of_faces(
+    faces: &[Front],
+    axes: &Frame,
+    along: f64,
+    radius: f64,
+) -> impl Iterator<Item = (DVec2, f64)> {
+    let here = move |face: &Front| Front { distance: face.height(axes.z * along), ..*face };
+    faces.iter().filter_map(move |face| line_on_disc(&here(face), axes, radius))
 }
 
 /// Random numbers of a place and `salt`.

@@ -4,7 +4,7 @@ use super::PhotonTree;
 use super::block::ROW;
 use super::cylinder::Cylinder;
 use super::scratch::with_scratch;
-use super::within::{Neighbors, bits, relative};
+use super::within::{Neighbors, bits};
 use crate::math::{Interval, Ray};
 use wide::f32x8;
 
@@ -49,9 +49,7 @@ impl PhotonTree {
             let in_parts = parts.iter().map(is_in).fold(f32x8::ZERO, |all, part| all | part);
             let inside = in_parts & squared.simd_le(r2);
             if inside.any() {
-                let row = first / ROW;
-                let u2 = relative(squared, inverse_r2);
-                visit_row(Neighbors { tree: self, row, u2, inside, share: 1.0 }, feet);
+                visit_row(self.neighbors(first / ROW, (squared, inverse_r2), inside, 1.0), feet);
             }
             bits((near & !in_parts).to_bitmask()).for_each(|lane| ask(first + lane));
         });

@@ -7,7 +7,7 @@ use super::boxes::Probe;
 use super::nearest::{Counted, Nearest, Shell, Sphere, share};
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
-use super::within::{Neighbors, Visit, relative};
+use super::within::Visit;
 use glam::DVec3;
 use wide::f32x8;
 
@@ -107,23 +107,11 @@ impl PhotonTree {
                         let row = row as usize;
                         let inside = squared.simd_lt(radius);
                         if inside.any() {
-                            visitor.visit(Neighbors {
-                                tree: self,
-                                row,
-                                u2: relative(squared, inverse_r2),
-                                inside,
-                                share: 1.0,
-                            });
+                            visitor.visit(self.neighbors(row, (squared, inverse_r2), inside, 1.0));
                         }
                         let tied = squared.simd_eq(radius);
                         if share > 0.0 && tied.any() {
-                            visitor.visit(Neighbors {
-                                tree: self,
-                                row,
-                                u2: relative(squared, inverse_r2),
-                                inside: tied,
-                                share,
-                            });
+                            visitor.visit(self.neighbors(row, (squared, inverse_r2), tied, share));
                         }
                     }
                     Nearest::Found(Shell {
@@ -152,13 +140,7 @@ impl PhotonTree {
             let inverse_r2 = 1.0 / r2;
             for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
                 let (row, inside) = (row as usize, squared.simd_le(f32x8::splat(r2)));
-                visitor.visit(Neighbors {
-                    tree: self,
-                    row,
-                    u2: relative(squared, inverse_r2),
-                    inside,
-                    share: 1.0,
-                });
+                visitor.visit(self.neighbors(row, (squared, inverse_r2), inside, 1.0));
             }
         });
     }

@@ -5,7 +5,7 @@ use super::block::BLOCK;
 use super::boxes::Probe;
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
-use super::within::{Neighbors, Visit, relative};
+use super::within::Visit;
 use glam::DVec3;
 use wide::f32x8;
 
@@ -89,13 +89,7 @@ impl PhotonTree {
                 for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
                     let (row, inside) = (row as usize, squared.simd_lt(radius));
                     if inside.any() {
-                        visitor.visit(Neighbors {
-                            tree: self,
-                            row,
-                            u2: relative(squared, inverse_r2),
-                            inside,
-                            share: 1.0,
-                        });
+                        visitor.visit(self.neighbors(row, (squared, inverse_r2), inside, 1.0));
                     }
                 }
                 if share > 0.0 {
@@ -117,7 +111,7 @@ impl PhotonTree {
         for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
             let (row, inside) = (row as usize, squared.simd_eq(f32x8::splat(r2)));
             if inside.any() {
-                visitor.visit(Neighbors { tree: self, row, u2: relative(squared, 1.0 / r2), inside, share });
+                visitor.visit(self.neighbors(row, (squared, 1.0 / r2), inside, share));
             }
         }
     }
@@ -142,7 +136,7 @@ impl PhotonTree {
         let share = share(&sphere, k, counted);
         for (row, squared) in self.all_at(1.0) {
             let inside = squared.simd_le(f32x8::ONE);
-            visitor.visit(Neighbors { tree: self, row, u2: relative(squared, 1.0), inside, share });
+            visitor.visit(self.neighbors(row, (squared, 1.0), inside, share));
         }
         Nearest::Found(Shell { radius, closer: 0, tied: self.stored, coincident: 0 })
     }

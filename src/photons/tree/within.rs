@@ -19,12 +19,6 @@ pub struct Neighbors<'a> {
     pub(super) share: f32,
 }
 
-/// Squared distances over the squared radius, whose inverse is given; rounding leaves none above 1.
-#[inline(always)]
-pub(super) fn relative(squared: f32x8, inverse_r2: f32) -> f32x8 {
-    (squared * f32x8::splat(inverse_r2)).fast_min(f32x8::ONE)
-}
-
 impl<'a> Neighbors<'a> {
     /// Squared distances over the squared radius, at most 1. Lanes that were not found mean nothing.
     #[inline(always)]
@@ -116,6 +110,20 @@ const fn set_bits() -> [([u32; 4], usize); 16] {
 }
 
 impl PhotonTree {
+    /// The photons of a row that are `inside`, of squared distances and the inverse of the squared radius, over which rounding leaves none
+    /// above 1.
+    #[inline(always)]
+    pub(super) fn neighbors(
+        &self,
+        row: usize,
+        (squared, inverse_r2): (f32x8, f32),
+        inside: f32x8,
+        share: f32,
+    ) -> Neighbors<'_> {
+        let u2 = (squared * f32x8::splat(inverse_r2)).fast_min(f32x8::ONE);
+        Neighbors { tree: self, row, u2, inside, share }
+    }
+
     /// Visits every photon at most `radius` \[L\] from `centre`, by blocks, in the tree's order; a photon
     /// exactly at `radius` is inside. `radius` is above zero.
     ///
@@ -136,13 +144,7 @@ impl PhotonTree {
                 scratch.measure(self, |positions| probe.squared_distances(positions), r2);
                 for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
                     let inside = squared.simd_le(f32x8::splat(r2));
-                    visitor.visit(Neighbors {
-                        tree: self,
-                        row: row as usize,
-                        u2: relative(squared, inverse_r2),
-                        inside,
-                        share: 1.0,
-                    });
+                    visitor.visit(self.neighbors(row as usize, (squared, inverse_r2), inside, 1.0));
                 }
             });
         }
@@ -155,7 +157,7 @@ impl PhotonTree {
         if u2 <= 1.0 {
             for (row, squared) in self.all_at(u2 as f32) {
                 let inside = squared.simd_le(f32x8::ONE);
-                visitor.visit(Neighbors { tree: self, row, u2: relative(squared, 1.0), inside, share: 1.0 });
+                visitor.visit(self.neighbors(row, (squared, 1.0), inside, 1.0));
             }
         }
     }
