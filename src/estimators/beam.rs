@@ -176,7 +176,8 @@ impl BeamEstimator {
             found += 1;
             let share = match &about {
                 Some(about) if self.is_clipped && !(about.is_clear(radius) && is_whole) => {
-                    about.disc_share(self.kernel, beam.dir, radius, beam.start.x.to_bits(), squared.sqrt())
+                    let share = about.disc_share(self.kernel, beam.dir, radius, beam.start.x.to_bits());
+                    share.divisor(self.kernel, squared.sqrt() / radius)
                 }
                 _ => 1.0,
             };
@@ -331,13 +332,11 @@ impl BeamEstimator {
         beam: &Beam,
     ) -> Option<f64> {
         let (radius, seen) = (self.radius.get(), away.length());
-        beside.disc_divisor(
-            self.kernel,
-            (along, radius, seen),
-            (self.is_clipped, true),
-            beam.start.x.to_bits(),
-            |about| about.sees(ray.at(along) + away),
-        )
+        let at = (along, radius, seen);
+        let sees = |about: &Surroundings<'_>| about.sees(ray.at(along) + away);
+        let share =
+            beside.disc_share(self.kernel, at, (self.is_clipped, true), beam.start.x.to_bits(), sees)?;
+        Some(share.divisor(self.kernel, seen / radius))
     }
 
     /// What a beam is divided by; none if a body hides it from the ray.

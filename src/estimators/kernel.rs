@@ -245,21 +245,6 @@ impl Kernel {
         (self.closed().within_disc)(u)
     }
 
-    /// [`Kernel::within_disc`] for eight distances, within 1e-6 of it (tested).
-    #[inline(always)]
-    pub fn within_discs(self, u: f32x8) -> f32x8 {
-        let (u2, [two, three]) = (u * u, [2.0, 3.0].map(f32x8::splat));
-        match self {
-            Kernel::Uniform => u2,
-            Kernel::Epanechnikov => u2 * (two - u2),
-            Kernel::Cone => u2 * (three - two * u),
-            Kernel::Biweight => u2 * (three - u2 * (three - u2)),
-            Kernel::Gaussian => {
-                (f32x8::ONE - gaussian_profiles(u2)) * f32x8::splat((-1.0 / exp_m1(-A)) as f32)
-            }
-        }
-    }
-
     /// K at the centre of the line, on which it integrates to one from -1 to 1.
     pub fn line_peak(self) -> f64 {
         self.closed().line_peak

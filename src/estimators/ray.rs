@@ -64,8 +64,9 @@ impl RayEstimator {
     ///
     /// # Limits
     /// the stretch is cut square at its ends: if it is not clipped the light of a length of (2/(3 pi)) r tan(theta) is missing at a
-    /// face that the ray meets aslant (uniform kernel), and what bodies beside the ray hide; clipped, a photon is divided by no less
-    /// than 1/32 of the kernel within its distance, so that layers thinner than a fortieth of the radius come out too dark
+    /// face that the ray meets aslant (uniform kernel), and what bodies beside the ray hide; clipped among
+    /// bodies that do not part the whole disc, a photon is divided by no less than 1/32 of the kernel within its distance, so that gaps
+    /// between them thinner than a fortieth of the radius come out too dark
     pub fn radiance(
         &self,
         map: &PhotonMap,
@@ -200,13 +201,10 @@ impl RayEstimator {
         (photon, radius, squared): (DVec3, f64, f64),
         foot: f64,
     ) -> Option<f64> {
-        beside.disc_divisor(
-            self.kernel,
-            (foot, radius, squared.sqrt()),
-            (self.is_clipped, boundary.is_only),
-            map.run(),
-            |about| about.keeps(photon),
-        )
+        let seen = squared.sqrt();
+        let (at, asked) = ((foot, radius, seen), (self.is_clipped, boundary.is_only));
+        let share = beside.disc_share(self.kernel, at, asked, map.run(), |about| about.keeps(photon))?;
+        Some(share.divisor(self.kernel, seen / radius))
     }
 }
 

@@ -261,6 +261,72 @@ fn a_uniform_source_comes_out_right_beside_walls() {
     }
 }
 
+/// A uniform source in a layer and in a ball far smaller than the radius, alone, beside plates that are larger than the layer, and cut through by
+/// a wall: clipped it comes out right, by rows and one by one.
+#[test]
+fn what_is_thinner_than_the_radius_is_no_darker() {
+    const THICKNESS: f64 = 0.002;
+    const PHOTONS: u64 = 4_000;
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    let low = DVec3::new(0.0, 0.0, 0.1);
+    let layer = cuboid(low, DVec3::new(1.0, 1.0, 0.1 + THICKNESS));
+    let ball = Shape::Sphere(Sphere::new(DVec3::splat(0.1), THICKNESS).unwrap());
+    let plate = |z: f64| {
+        Shape::Rectangle(Rectangle::new(DVec3::new(-1.0, -1.0, z), DVec3::X * 3.0, DVec3::Y * 3.0).unwrap())
+    };
+    let plates = [plate(0.1 - 1e-4), plate(0.1 + THICKNESS + 1e-4)];
+    let wall = [Shape::Rectangle(
+        Rectangle::new(DVec3::new(0.0, 0.7, 0.0), DVec3::new(1.0, 0.1, 0.0), DVec3::Z).unwrap(),
+    )];
+    let (of_layer, of_ball) = (Boundary::of(&layer).unwrap(), Boundary::of(&ball).unwrap());
+    let aslant = Ray::new(DVec3::new(-0.2, 0.55, 0.1009), DVec3::new(1.0, -0.1, 3e-4).normalize());
+    let through = Ray::new(DVec3::new(-0.2, 0.1005, 0.1), DVec3::new(1.0, 0.0, 1e-3).normalize());
+    let cases = [
+        ("a layer", &layer, of_layer, aslant),
+        ("a layer between plates", &layer, of_layer.about(&plates), aslant),
+        ("a layer beside a wall", &layer, of_layer.about(&wall), aslant),
+        ("a ball", &ball, of_ball, through),
+    ];
+    for (name, shape, boundary, ray) in cases {
+        let span = shape.interval(&ray).unwrap();
+        let volume = if shape == &ball { FOUR_PI / 3.0 * THICKNESS.powi(3) } else { THICKNESS };
+        let expected = (1.0 - exp(-span.length())) / (volume * FOUR_PI);
+        let mut moments = [Moments::new(); 2];
+        for replicate in 0..100 {
+            let mut stream = Stream::new(21, Purpose::Synthetic, replicate, 0);
+            let mut place = || loop {
+                let unit = DVec3::from(stream.triple());
+                let place = if shape == &ball {
+                    DVec3::splat(0.1) + THICKNESS * (2.0 * unit - 1.0)
+                } else {
+                    low + unit * DVec3::new(1.0, 1.0, THICKNESS)
+                };
+                if shape.contains(place) {
+                    return place;
+                }
+            };
+            let photons: Vec<Photon> = (0..PHOTONS).map(|_| photon(place(), Vec3::Z)).collect();
+            let map = PhotonMap::new(photons, PHOTONS).unwrap();
+            let reading =
+                RayEstimator { is_clipped: true, ..reading(Kernel::ALL[replicate as usize % 5], 0.2) };
+            let passage = Passage::new(&even, &ray, span, &mut stream);
+            let rows = reading.radiance(&map, (&ray, span), &even, &boundary, &passage);
+            let single = reading.radiance(&map, (&ray, span), &even, &boundary, |t| passage.to(t));
+            moments[0].push(rows.value[0]);
+            moments[1].push(single.value[0]);
+        }
+        for (way, moments) in ["by rows", "one by one"].into_iter().zip(&moments) {
+            verdict::agrees(
+                &format!("{name}, {way}"),
+                moments,
+                (expected, 0.002 * expected),
+                0.035 * expected,
+                21,
+            );
+        }
+    }
+}
+
 /// Where the medium is the same everywhere rows of photons are read at once: as one by one, with every kernel, phase functions of every
 /// kind, colours or none, clipped or not, in every solid shape, alone, with walls, a block, a ball and a hole, before, in and behind the
 /// medium. Clipped near walls they are divided by the share of a stretch, not of their own foot: right in the mean.

@@ -1,8 +1,8 @@
 //! What comes near a stretch of a ray: looked for once, and asked at every place of it.
 
 use super::Boundary;
-use super::sheets::Sheets;
-use super::visible::{ALONG, Surroundings, least_of_disc, lines_of_faces};
+use super::sheets::{Sheets, rectangles_of};
+use super::visible::{ALONG, DiscShare, Surroundings, lines_of_faces};
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_before;
 use crate::geometry::{Cuboid, Front, Rectangle, Shape};
@@ -48,30 +48,30 @@ impl<'a> Beside<'a> {
         Beside { boundary, ray, bodies, later, faces, axes: Frame::new(ray.dir) }
     }
 
-    /// What a photon is divided by that is found on the disc of a radius across the ray, `seen` \[L\] from its middle at a distance along
-    /// it, as [`Beside::divisor`]. `salt` of what is chosen at random.
-    pub fn disc_divisor(
+    /// The part of the disc of a radius across the ray on which photons are kept, of one found `seen` \[L\] from its middle at a distance along
+    /// it, as [`Beside::share`]. `salt` of what is chosen at random.
+    pub fn disc_share(
         &self,
         kernel: Kernel,
         (along, radius, seen): (f64, f64, f64),
         (is_clipped, is_owned): (bool, bool),
         salt: u64,
         keeps: impl FnOnce(&Surroundings<'_>) -> bool,
-    ) -> Option<f64> {
-        let of_disc = |about: &Surroundings<'_>| about.disc_share(kernel, self.ray.dir, radius, salt, seen);
+    ) -> Option<DiscShare> {
+        let of_disc = |about: &Surroundings<'_>| about.disc_share(kernel, self.ray.dir, radius, salt);
         match &self.faces {
             Some(faces) if is_clipped && is_owned && self.is_far(along) => {
                 if self.is_whole(along, radius) {
-                    return Some(1.0);
+                    return Some(DiscShare::WHOLE);
                 }
                 let (mut lines, mut count) = ([(DVec2::ZERO, 0.0); FACES], 0);
                 for line in lines_of_faces(faces, &self.axes, along, radius) {
                     lines[count] = line;
                     count += 1;
                 }
-                Some(share_before(kernel, &lines[..count]).max(least_of_disc(kernel, seen / radius)))
+                Some(DiscShare::exact(share_before(kernel, &lines[..count])))
             }
-            _ => self.divisor((along, radius, seen), (is_clipped, is_owned), keeps, of_disc),
+            _ => self.share((along, radius, seen), (is_clipped, is_owned), keeps, DiscShare::WHOLE, of_disc),
         }
     }
 
@@ -100,29 +100,30 @@ impl<'a> Beside<'a> {
                 let least = 0.5 * kernel.within_line(seen / radius);
                 Some((up_to(across) + up_to(-across)).max(least).max(f64::MIN_POSITIVE))
             }
-            _ => self.divisor((along, radius, seen), (is_clipped, true), keeps, of_line),
+            _ => self.share((along, radius, seen), (is_clipped, true), keeps, 1.0, of_line),
         }
     }
 
-    /// What a photon or beam is divided by that is found within a radius of the place at a distance along the ray, `seen` \[L\] away from it:
-    /// 1 where everything about it counts or nothing is clipped, else what `share` says of what stands there. None where it is not
+    /// The share of a photon or beam that is found within a radius of the place at a distance along the ray, `seen` \[L\] away from it:
+    /// `whole` where everything about it counts or nothing is clipped, else what `share` says of what stands there. None where it is not
     /// kept. `is_owned` where it is sure to be of the medium.
-    fn divisor(
+    fn share<T>(
         &self,
         (along, radius, seen): (f64, f64, f64),
         (is_clipped, is_owned): (bool, bool),
         keeps: impl FnOnce(&Surroundings<'_>) -> bool,
-        share: impl FnOnce(&Surroundings<'_>) -> f64,
-    ) -> Option<f64> {
+        whole: T,
+        share: impl FnOnce(&Surroundings<'_>) -> T,
+    ) -> Option<T> {
         if self.boundary.is_clear() && !is_clipped || is_owned && self.is_clear(along, radius) {
-            return Some(1.0);
+            return Some(whole);
         }
         let about = self.at(along, BEYOND * if is_clipped { radius } else { seen });
         if !keeps(&about) {
             return None;
         }
         let is_whole = !is_clipped || (about.is_clear(radius) && self.is_whole(along, radius));
-        Some(if is_whole { 1.0 } else { share(&about) })
+        Some(if is_whole { whole } else { share(&about) })
     }
 
     /// Parts of the stretch, in order and apart, of which everything within a radius is of the medium and seen, or nothing is asked.
@@ -141,8 +142,7 @@ impl<'a> Beside<'a> {
     /// Parts of the stretch, in order and apart, near which there are no other bodies than flat ones; none where photons may be of another
     /// medium.
     pub fn flat_parts(&self, span: Interval) -> Option<Vec<Interval>> {
-        let is_flat = |shape: &Shape| matches!(shape, Shape::Rectangle(_) | Shape::Cuboid(_));
-        let others = self.bodies.iter().filter(|(_, body)| !is_flat(body)).chain(&self.later);
+        let others = self.bodies.iter().filter(|(_, body)| rectangles_of(body).is_none()).chain(&self.later);
         self.boundary.is_only.then(|| without(span, others))
     }
 
@@ -155,19 +155,10 @@ impl<'a> Beside<'a> {
         Some(Sheets::new(self.ray, self.rectangles().map(|(_, rectangle)| rectangle), faces))
     }
 
-    /// The ray's place at a distance along it \[L\].
-    pub fn place(&self, along: f64) -> DVec3 {
-        self.ray.at(along)
-    }
-
     /// The rectangles of flat bodies, each with the part of the line where it may be near.
     pub fn rectangles(&self) -> impl Iterator<Item = (Interval, Rectangle)> {
         self.bodies.iter().flat_map(|(part, body)| {
-            let rectangles = match body {
-                Shape::Rectangle(rectangle) => vec![*rectangle],
-                Shape::Cuboid(cuboid) => cuboid.faces(),
-                _ => Vec::new(),
-            };
+            let rectangles = rectangles_of(body).unwrap_or_default();
             rectangles.into_iter().map(|rectangle| (*part, rectangle))
         })
     }
@@ -276,15 +267,13 @@ mod tests {
             let about = Surroundings::new(&boundary, place, place, BEYOND * radius);
             let is_whole = about.is_clear(radius) && medium.room(place) >= radius;
             let across = Frame::new(dir).x;
-            let disc = if is_whole { 1.0 } else { about.disc_share(kernel, dir, radius, salt, seen) };
+            let disc = if is_whole { DiscShare::WHOLE } else { about.disc_share(kernel, dir, radius, salt) };
             let line = if is_whole { 1.0 } else { about.line_share(kernel, across, radius, seen) };
             let at = (along, radius, seen);
-            let told = [
-                beside.disc_divisor(kernel, at, (true, true), salt, |_| true).unwrap(),
-                beside.line_divisor(kernel, at, true, across, |_| true).unwrap(),
-            ];
+            let told_of_disc = beside.disc_share(kernel, at, (true, true), salt, |_| true).unwrap();
+            let told = [told_of_disc.part, beside.line_divisor(kernel, at, true, across, |_| true).unwrap()];
             counts[if beside.is_far(along) { usize::from(is_whole) } else { 2 }] += 1;
-            for (told, expected) in told.into_iter().zip([disc, line]) {
+            for (told, expected) in told.into_iter().zip([disc.part, line]) {
                 // What is left of 1 where lines are all but through the middle of the disc has rounding of that.
                 assert!(
                     (told - expected).abs() < 1e-5 * expected + 1e-15,

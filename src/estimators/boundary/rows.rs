@@ -2,7 +2,7 @@
 
 use super::beside::Beside;
 use super::sheets::Sheets;
-use super::visible::{ACROSS, stream_of};
+use super::visible::{ACROSS, DiscShare};
 use crate::estimators::Kernel;
 use crate::geometry::Rectangle;
 use crate::math::{Interval, Ray};
@@ -14,7 +14,7 @@ use wide::f32x8;
 /// A share is the mean over a stretch of this part of the radius, by which a uniform source is right however the share changes in it.
 const STRETCH: f64 = 0.125;
 
-/// Of shares that differ by less than this at the ends of a stretch, or in the middle from what the ends say, no more are asked.
+/// Of shares that differ by less than this part at the ends of a stretch, or in the middle from what the ends say, no more are asked.
 const EVEN: f64 = 0.03;
 
 /// Of others so many, evenly spread.
@@ -29,10 +29,8 @@ const MOST: f64 = 1024.0;
 /// Feet of photons are no farther than this from the place of the ray nearest the middle of their map \[units\].
 const FARTHEST: f64 = 2.0;
 
-/// Shares below this are rounding.
-const NONE: f64 = 1e-9;
-
-/// A photon is divided by no less than this of its squared distance over the radius: what one direction brings that sees as far as it.
+/// Where directions tell the share, a photon is divided by no less than this of its squared distance over the radius: what one direction
+/// brings that sees as far as it.
 const ONE_DIRECTION: f32 = 1.0 / ACROSS as f32;
 
 /// What is beside a stretch of a ray. Feet are told from the ray's place nearest the middle of the photons' map, in the map's units.
@@ -100,7 +98,11 @@ impl<'a> BesideRows<'a> {
         let hidden = self.hidden(row, feet);
         let kept = inside & !hidden;
         let shares = match &mut self.shares {
-            Some(shares) => shares.at(kept, feet).fast_max(row.u2() * f32x8::splat(ONE_DIRECTION)),
+            Some(shares) => {
+                let shares = shares.at(kept, feet);
+                let is_sampled = shares.simd_lt(f32x8::ZERO);
+                shares.abs().fast_max(is_sampled & (row.u2() * f32x8::splat(ONE_DIRECTION)))
+            }
             None => f32x8::ONE,
         };
         (kept, shares)
@@ -208,9 +210,9 @@ struct Shares<'a> {
     per_foot: f32,
     /// The last stretch.
     last: f32,
-    /// Shares of the stretches, and at their ends; 0 where none was asked.
+    /// Shares of the stretches, negative where directions tell them, and at their ends; 0 and none where none was asked.
     known: Vec<f32>,
-    at_ends: Vec<f64>,
+    at_ends: Vec<Option<DiscShare>>,
 }
 
 impl<'a> Shares<'a> {
@@ -241,7 +243,7 @@ impl<'a> Shares<'a> {
             per_foot,
             last: (count - 1) as f32,
             known: vec![0.0; count],
-            at_ends: vec![0.0; count + 1],
+            at_ends: vec![None; count + 1],
         }
     }
 
@@ -271,44 +273,50 @@ impl<'a> Shares<'a> {
     #[cold]
     fn ask(&mut self, stretch: usize) {
         if self.known[stretch] == 0.0 {
-            self.known[stretch] = self.mean_of(stretch) as f32;
+            let DiscShare { part, is_sampled } = self.mean_of(stretch);
+            let part = part.max(DiscShare::LEAST) as f32;
+            self.known[stretch] = if is_sampled { -part } else { part };
         }
     }
 
     /// The mean share over a stretch.
-    fn mean_of(&mut self, stretch: usize) -> f64 {
-        for end in [stretch, stretch + 1] {
-            if self.at_ends[end] == 0.0 {
-                self.at_ends[end] = self.share_at(end as f64);
-            }
-        }
-        let (start, end) = (self.at_ends[stretch], self.at_ends[stretch + 1]);
-        if (end - start).abs() <= EVEN {
-            return 0.5 * (start + end);
+    fn mean_of(&mut self, stretch: usize) -> DiscShare {
+        let [start, end] = [stretch, stretch + 1].map(|end| {
+            self.at_ends[end].unwrap_or_else(|| {
+                let share = self.share_at(end as f64);
+                self.at_ends[end] = Some(share);
+                share
+            })
+        });
+        let told = |shares: &[DiscShare], weights: &[f64]| {
+            let part = shares.iter().zip(weights).map(|(share, weight)| share.part * weight).sum::<f64>();
+            let is_sampled = shares.iter().any(|share| share.is_sampled);
+            DiscShare { part: part / weights.iter().sum::<f64>(), is_sampled }
+        };
+        let even = EVEN * start.part.max(end.part);
+        if (end.part - start.part).abs() <= even {
+            return told(&[start, end], &[1.0, 1.0]);
         }
         let middle = self.share_at(stretch as f64 + 0.5);
-        if (start - 2.0 * middle + end).abs() <= EVEN {
-            return (start + 4.0 * middle + end) / 6.0;
+        if (start.part - 2.0 * middle.part + end.part).abs() <= even {
+            return told(&[start, middle, end], &[1.0, 4.0, 1.0]);
         }
         let place = |n: usize| stretch as f64 + (n as f64 + 0.5) / PLACES as f64;
-        (0..PLACES).map(|n| self.share_at(place(n))).sum::<f64>() / PLACES as f64
+        let shares: [DiscShare; PLACES] = std::array::from_fn(|n| self.share_at(place(n)));
+        told(&shares, &[1.0; PLACES])
     }
 
     /// The share at a place, counted in stretches.
-    fn share_at(&self, stretches: f64) -> f64 {
+    fn share_at(&self, stretches: f64) -> DiscShare {
         let along = self.start + stretches * self.length;
-        let share = match &self.sheets {
-            Some(sheets) => {
-                let turn = stream_of(self.beside.place(along), self.salt).unit();
-                sheets.share(self.kernel, along, self.radius, turn)
-            }
+        match &self.sheets {
+            Some(sheets) => DiscShare::exact(sheets.share(self.kernel, along, self.radius)),
             None => {
                 let place = (along, self.radius, 0.0);
-                let share = self.beside.disc_divisor(self.kernel, place, (true, true), self.salt, |_| true);
-                share.unwrap_or(1.0)
+                let share = self.beside.disc_share(self.kernel, place, (true, true), self.salt, |_| true);
+                share.unwrap_or(DiscShare::WHOLE)
             }
-        };
-        share.max(NONE)
+        }
     }
 }
 
@@ -369,10 +377,10 @@ mod tests {
             for n in 0..count {
                 let along = span.start + span.length() * (n as f64 + 0.5) / count as f64;
                 let foot = f32x8::splat(((along - middle) / unit) as f32);
-                let told = f64::from(shares.at(f32x8::splat(f32::from_bits(u32::MAX)), foot).to_array()[0]);
-                let seen =
-                    beside.disc_divisor(kernel, (along, radius, 0.0), (true, true), n as u64, |_| true);
-                let ratio = seen.unwrap() / told;
+                let told = shares.at(f32x8::splat(f32::from_bits(u32::MAX)), foot).to_array()[0];
+                let told = f64::from(told.abs());
+                let seen = beside.disc_share(kernel, (along, radius, 0.0), (true, true), n as u64, |_| true);
+                let ratio = seen.unwrap().part / told;
                 sum += ratio;
                 worst = worst.max((ratio - 1.0).abs());
             }

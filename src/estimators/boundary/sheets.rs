@@ -1,21 +1,23 @@
 //! The part of a disc across a ray that is seen from its middle among flat bodies: where they cut the disc's plane they are segments.
 
-use super::visible::{ACROSS, CIRCLE, lines_of_faces};
+use super::visible::lines_of_faces;
 use crate::estimators::Kernel;
-use crate::estimators::disc_share::share_before;
-use crate::geometry::{Front, Rectangle};
+use crate::estimators::disc_share::{share_among, share_before};
+use crate::geometry::{Front, Rectangle, Shape};
 use crate::math::{Frame, Ray};
 use glam::{DVec2, DVec3};
-use wide::f32x8;
 
 /// A segment lies behind a line if it reaches no farther before it than this part of the disc's radius.
 const ON_LINE: f64 = 1e-6;
 
-/// Segments are cut so far from the place where they are nearest, over the radius.
-const FAR: f64 = 4.0;
-
-/// Rows of directions.
-const GROUPS: usize = ACROSS as usize / 8;
+/// The rectangles that a flat shape consists of.
+pub(super) fn rectangles_of(shape: &Shape) -> Option<Vec<Rectangle>> {
+    match shape {
+        Shape::Rectangle(rectangle) => Some(vec![*rectangle]),
+        Shape::Cuboid(cuboid) => Some(cuboid.faces()),
+        _ => None,
+    }
+}
 
 /// A rectangle as a ray has it: how far along the ray its corner is and how far across it, and its edges the same.
 struct Sheet {
@@ -68,9 +70,8 @@ impl Sheets {
         Sheets { axes, sheets: rectangles.map(sheet).collect(), faces }
     }
 
-    /// The part of the disc of a radius at a distance along the ray \[L\] that is in the medium and seen from its middle: exact where segments
-    /// part the whole disc, and else by directions at equal angles, turned by `turn` in [0, 1) of the angle between them.
-    pub fn share(&self, kernel: Kernel, along: f64, radius: f64, turn: f64) -> f64 {
+    /// The part of the disc of a radius at a distance along the ray \[L\] that is in the medium and seen from its middle.
+    pub fn share(&self, kernel: Kernel, along: f64, radius: f64) -> f64 {
         let mut lines: Vec<(DVec2, f64)> = lines_of_faces(&self.faces, &self.axes, along, radius).collect();
         let mut segments: Vec<[DVec2; 2]> = Vec::new();
         for [a, b] in self.sheets.iter().filter_map(|sheet| sheet.segment(along)) {
@@ -85,8 +86,7 @@ impl Sheets {
             if a.length_squared().min(b.length_squared()) >= 1.0 && away > 0.0 {
                 lines.push((towards, away));
             } else {
-                // What is farther off is not on the disc, and would cost single precision.
-                segments.push([a, b].map(|end| nearest + (end - nearest).clamp_length_max(FAR)));
+                segments.push([a, b]);
             }
         }
         segments.retain(|ends| {
@@ -94,43 +94,11 @@ impl Sheets {
                 |(towards, away): &(DVec2, f64)| ends.iter().all(|end| end.dot(*towards) >= away - ON_LINE);
             !lines.iter().any(is_behind)
         });
-        match segments.is_empty() {
-            true => share_before(kernel, &lines),
-            false => seen(kernel, &lines, &segments, turn),
+        if segments.is_empty() {
+            return share_before(kernel, &lines);
         }
+        share_among(kernel, &lines, &segments)
     }
-}
-
-/// The part of the kernel's disc that is seen before lines and segments, by directions.
-fn seen(kernel: Kernel, lines: &[(DVec2, f64)], segments: &[[DVec2; 2]], turn: f64) -> f64 {
-    let (sin, cos) = crate::math::sin_cos(turn * std::f64::consts::TAU / f64::from(ACROSS));
-    let (sin, cos) = (f32x8::splat(sin as f32), f32x8::splat(cos as f32));
-    let splat = |x: f64| f32x8::splat(x as f32);
-    let mut sum = f32x8::ZERO;
-    for group in 0..GROUPS {
-        let coordinate = |axis: usize| {
-            f32x8::new(std::array::from_fn(|lane| CIRCLE[8 * group + lane].to_array()[axis] as f32))
-        };
-        let (x, y) = (coordinate(0), coordinate(1));
-        let (x, y) = (x * cos - y * sin, y * cos + x * sin);
-        let mut reach = f32x8::ONE;
-        for (towards, away) in lines {
-            let slope = x * splat(towards.x) + y * splat(towards.y);
-            let at = splat(*away) / slope;
-            reach = slope.simd_gt(f32x8::ZERO).bitselect(reach.fast_min(at), reach);
-        }
-        for [a, b] in segments {
-            let way = *b - *a;
-            // From the middle to a + s (b - a).
-            let across = x * splat(way.y) - y * splat(way.x);
-            let at = splat(a.perp_dot(way)) / across;
-            let part = (splat(a.x) * y - splat(a.y) * x) / across;
-            let is_met = at.simd_gt(f32x8::ZERO) & part.simd_ge(f32x8::ZERO) & part.simd_le(f32x8::ONE);
-            reach = is_met.bitselect(reach.fast_min(at), reach);
-        }
-        sum += kernel.within_discs(reach);
-    }
-    sum.as_array().iter().map(|part| f64::from(*part)).sum::<f64>() / f64::from(ACROSS)
 }
 
 #[cfg(test)]
@@ -153,7 +121,7 @@ mod tests {
     /// ask each rectangle for itself.
     #[test]
     fn shares_are_those_of_rays_to_all_sides() {
-        const TURNS: u32 = 64;
+        const RAYS: u32 = 4096;
         let mut stream = Stream::new(6, Purpose::Synthetic, 0, 0);
         let (mut whole, mut parted) = (0, 0);
         let cuboid = Shape::Cuboid(Cuboid::new(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap());
@@ -167,8 +135,7 @@ mod tests {
             let ray = Ray::new(place - dir * along, dir);
             let faces = cuboid.faces_about(ray.origin).unwrap();
             let sheets = Sheets::new(&ray, rectangles.iter().copied(), faces);
-            let turned = |turn: u32| sheets.share(kernel, along, radius, f64::from(turn) / f64::from(TURNS));
-            let found = (0..TURNS).map(turned).sum::<f64>() / f64::from(TURNS);
+            let found = sheets.share(kernel, along, radius);
             let axes = Frame::new(dir);
             let reach = |angle: f64| {
                 let (sin, cos) = sin_cos(angle);
@@ -177,9 +144,8 @@ mod tests {
                 let until = |end: f64, one: &Rectangle| Shape::Rectangle(*one).until(&way, end);
                 kernel.within_disc(rectangles.iter().fold(end, until) / radius)
             };
-            let count = TURNS * ACROSS;
-            let all = (0..count).map(|n| reach(TAU * f64::from(n) / f64::from(count))).sum::<f64>();
-            let expected = all / f64::from(count);
+            let all = (0..RAYS).map(|n| reach(TAU * f64::from(n) / f64::from(RAYS))).sum::<f64>();
+            let expected = all / f64::from(RAYS);
             // Of a cone's tip beside a line the closed form is known to 10^-4.
             assert!(
                 (found - expected).abs() < 4e-4,

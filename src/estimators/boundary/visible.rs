@@ -4,10 +4,11 @@
 //! kernel on a ray is then known in closed form, and only the directions are sampled. Where one flat face parts the whole
 //! ball, nothing is.
 
+use super::sheets::{Sheets, rectangles_of};
 use super::surfaces::Boundary;
 use crate::estimators::Kernel;
-use crate::estimators::disc_share::{share_before, share_in_circle};
-use crate::geometry::{Front, Shape};
+use crate::estimators::disc_share::share_in_circle;
+use crate::geometry::{Front, Rectangle, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
 use crate::photons::PhotonTree;
 use crate::photons::tree::Neighbors;
@@ -47,17 +48,39 @@ static SPIRAL: LazyLock<Vec<DVec3>> = LazyLock::new(|| {
 });
 
 /// Cosines and sines of directions at equal angles.
-pub(super) static CIRCLE: LazyLock<[DVec2; ACROSS as usize]> = LazyLock::new(|| {
+static CIRCLE: LazyLock<[DVec2; ACROSS as usize]> = LazyLock::new(|| {
     std::array::from_fn(|n| {
         let (sin, cos) = sin_cos(TAU * n as f64 / f64::from(ACROSS));
         DVec2::new(cos, sin)
     })
 });
 
-/// The least part of a disc's kernel in which photons are kept where there is one, `seen` over the radius from its middle: what one
-/// direction brings.
-pub(super) fn least_of_disc(kernel: Kernel, seen: f64) -> f64 {
-    (kernel.within_disc(seen) / f64::from(ACROSS)).max(f64::MIN_POSITIVE)
+/// The part of a disc's kernel in which photons are kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::estimators) struct DiscShare {
+    /// Of 1.
+    pub part: f64,
+    /// Whether some directions tell it, not a closed form.
+    pub is_sampled: bool,
+}
+
+impl DiscShare {
+    /// All of it.
+    pub const WHOLE: DiscShare = DiscShare::exact(1.0);
+    /// Below this a closed form is rounding.
+    pub(super) const LEAST: f64 = f64::EPSILON;
+
+    /// By a closed form.
+    pub const fn exact(part: f64) -> Self {
+        DiscShare { part, is_sampled: false }
+    }
+
+    /// What a photon is divided by that is kept, `seen` over the radius from the middle: no less than the one direction brings in which it
+    /// is, where directions tell the share.
+    pub fn divisor(self, kernel: Kernel, seen: f64) -> f64 {
+        let least = if self.is_sampled { kernel.within_disc(seen) / f64::from(ACROSS) } else { 0.0 };
+        self.part.max(least).max(DiscShare::LEAST)
+    }
 }
 
 /// The line in which a plane cuts a disc about the point that it is before, across `axes.z`: a unit vector towards it and its distance
@@ -247,8 +270,9 @@ impl<'a> Surroundings<'a> {
         (sum / f64::from(count)).max(1.0 / f64::from(MOST))
     }
 
-    /// The planes before which everything is kept that is within a radius; none where more than planes parts it.
-    fn planes(&self, radius: f64) -> Option<Vec<Front>> {
+    /// The planes before which everything is kept that is within a radius, and the rectangles that hide something of it; none where
+    /// more than these parts it.
+    fn flat(&self, radius: f64) -> Option<(Vec<Front>, Vec<Rectangle>)> {
         if !self.later.is_empty() {
             return None;
         }
@@ -261,33 +285,32 @@ impl<'a> Surroundings<'a> {
         let is_behind =
             |body: &Body, front: &Front| body.shape.is_behind(self.eye, front, ON_PLANE * front.distance);
         let is_in = |body: &Body| planes.iter().any(|front| is_behind(body, front));
-        let is_told = self.bodies.iter().all(|body| body.distance >= radius || is_in(body));
-        is_told.then_some(planes)
+        let others = self.bodies.iter().filter(|body| body.distance < radius && !is_in(body));
+        let rectangles: Option<Vec<_>> = others.map(|body| rectangles_of(body.shape)).collect();
+        let rectangles = rectangles?.concat();
+        Some((planes, rectangles))
     }
 
-    /// The part of the disc's kernel across an axis in which photons are kept, as [`Surroundings::share`] of the ball's: exact where only
-    /// planes or the medium's own sphere part it, and else by rays in directions at equal angles, turned at random by the place and `salt`. At least what one
-    /// direction brings that sees as far as `seen` \[L\], where there is a photon.
-    pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64, seen: f64) -> f64 {
-        let axes = Frame::new(axis);
-        let least = least_of_disc(kernel, seen / radius);
+    /// The part of the disc's kernel across an axis in which photons are kept, as [`Surroundings::share`] of the ball's: exact where planes and
+    /// flat bodies alone or the medium's own sphere part it, and else by rays in directions at equal angles, turned at random by the place and `salt`.
+    pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64) -> DiscShare {
         if let (Some(Shape::Sphere(ball)), true) = (self.medium, self.is_clear(radius)) {
             let way = self.eye - ball.center();
             let height = way.dot(axis);
             let circle = ((ball.radius() - height) * (ball.radius() + height)).max(0.0).sqrt();
             // Rounding may put the centre just outside.
             let away = (way - axis * height).length().min(circle * INSIDE);
-            return share_in_circle(kernel, circle / radius, away / radius).max(least);
+            return DiscShare::exact(share_in_circle(kernel, circle / radius, away / radius));
         }
-        if let Some(planes) = self.planes(radius) {
-            let lines: Vec<(DVec2, f64)> =
-                planes.iter().filter_map(|plane| line_on_disc(plane, &axes, radius)).collect();
-            return share_before(kernel, &lines).max(least);
+        if let Some((planes, rectangles)) = self.flat(radius) {
+            let sheets = Sheets::new(&Ray::new(self.eye, axis), rectangles.into_iter(), planes);
+            return DiscShare::exact(sheets.share(kernel, 0.0, radius));
         }
+        let axes = Frame::new(axis);
         let (sin, cos) = sin_cos(TAU * stream_of(self.eye, salt).unit() / f64::from(ACROSS));
         let (x, y) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
         let one = |to: &DVec2| self.along(&|u| kernel.within_disc(u), x * to.x + y * to.y, radius);
-        (CIRCLE.iter().map(one).sum::<f64>() / f64::from(ACROSS)).max(least)
+        DiscShare { part: CIRCLE.iter().map(one).sum::<f64>() / f64::from(ACROSS), is_sampled: true }
     }
 
     /// The part of the line's kernel along a unit vector, both ways, in which beams are kept: exact. At least as far as `seen` \[L\] to
