@@ -121,8 +121,8 @@ impl BeamEstimator {
     /// not a number in a periodic cell that is smaller than the radius
     ///
     /// # Limits
-    /// a disc that is not clipped loses what lies beyond faces and behind bodies; the part of it that is left is exact where planes bound it, by a
-    /// rule in a sphere, and else found by 32 directions
+    /// a disc that is not clipped loses what lies beyond faces and behind bodies; the part of it that is left is exact where planes and flat bodies
+    /// bound it, by a rule in a sphere, and else found by 32 directions
     ///
     /// # Source
     /// Jarosz, Nowrouzezahrai, Sadeghi and Jensen 2011, beams at a point with a blur in two dimensions

@@ -1,8 +1,8 @@
 //! What comes near a stretch of a ray: looked for once, and asked at every place of it.
 
 use super::Boundary;
-use super::sheets::{Sheets, rectangles_of};
-use super::visible::{ALONG, DiscShare, Surroundings, lines_of_faces};
+use super::sheets::{ALONG, Sheets, lines_of_faces, rectangles_of};
+use super::visible::{DiscShare, Surroundings};
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_before;
 use crate::geometry::{Cuboid, Front, Rectangle, Shape};

@@ -1,6 +1,5 @@
 //! The part of a disc across a ray that is seen from its middle among flat bodies: where they cut the disc's plane they are segments.
 
-use super::visible::lines_of_faces;
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::{share_among, share_before};
 use crate::geometry::{Front, Rectangle, Shape};
@@ -8,7 +7,10 @@ use crate::math::{Frame, Ray};
 use glam::{DVec2, DVec3};
 
 /// A segment lies behind a line if it reaches no farther before it than this part of the disc's radius.
-const ON_LINE: f64 = 1e-6;
+const ON_LINE: f64 = 1e-9;
+
+/// Sines of angles below this are those of a plane along a disc.
+pub(super) const ALONG: f64 = 1e-9;
 
 /// The rectangles that a flat shape consists of.
 pub(super) fn rectangles_of(shape: &Shape) -> Option<Vec<Rectangle>> {
@@ -17,6 +19,23 @@ pub(super) fn rectangles_of(shape: &Shape) -> Option<Vec<Rectangle>> {
         Shape::Cuboid(cuboid) => Some(cuboid.faces()),
         _ => None,
     }
+}
+
+/// The lines in which faces, as the beginning of a ray along `axes.z` has them, cut the disc of a radius at a distance along it: unit vectors
+/// towards them and their distances over the radius. None of faces beyond the disc, and of those along it, behind which rounding may put its
+/// centre.
+pub(super) fn lines_of_faces(
+    faces: &[Front],
+    axes: &Frame,
+    along: f64,
+    radius: f64,
+) -> impl Iterator<Item = (DVec2, f64)> {
+    faces.iter().filter_map(move |face| {
+        let across = -DVec2::new(face.normal.dot(axes.x), face.normal.dot(axes.y));
+        let sine = across.length();
+        let away = face.height(axes.z * along).max(0.0) / (radius * sine);
+        (sine > ALONG && away < 1.0).then(|| (across / sine, away))
+    })
 }
 
 /// A rectangle as a ray has it: how far along the ray its corner is and how far across it, and its edges the same.

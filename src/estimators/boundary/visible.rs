@@ -29,8 +29,6 @@ const MOST: u32 = 16 * DIRECTIONS;
 /// Bodies lie in or behind a plane if they reach no farther out of it than this part of the point's distance: what rounding
 /// of a scene's numbers leaves. They hide no larger part of the kernel then.
 const ON_PLANE: f64 = 1e-6;
-/// Sines of angles below this are those of a plane along a disc.
-pub(super) const ALONG: f64 = 1e-9;
 /// The farthest that a point lies from the middle of a circle, in parts of its radius.
 const INSIDE: f64 = 1.0 - 1e-12;
 /// Turns of this angle spread points evenly about an axis \[rad\]: pi (3 - sqrt 5).
@@ -81,26 +79,6 @@ impl DiscShare {
         let least = if self.is_sampled { kernel.within_disc(seen) / f64::from(ACROSS) } else { 0.0 };
         self.part.max(least).max(DiscShare::LEAST)
     }
-}
-
-/// The line in which a plane cuts a disc about the point that it is before, across `axes.z`: a unit vector towards it and its distance
-/// over the radius. None beyond the disc, and of a plane along it, whose centre rounding may put just behind that.
-fn line_on_disc(plane: &Front, axes: &Frame, radius: f64) -> Option<(DVec2, f64)> {
-    let across = -DVec2::new(plane.normal.dot(axes.x), plane.normal.dot(axes.y));
-    let sine = across.length();
-    let away = plane.distance.max(0.0) / (radius * sine);
-    (sine > ALONG && away < 1.0).then(|| (across / sine, away))
-}
-
-/// The lines in which faces, as the beginning of a ray along `axes.z` has them, cut the disc at a distance along it.
-pub(super) fn lines_of_faces(
-    faces: &[Front],
-    axes: &Frame,
-    along: f64,
-    radius: f64,
-) -> impl Iterator<Item = (DVec2, f64)> {
-    let here = move |face: &Front| Front { distance: face.height(axes.z * along), ..*face };
-    faces.iter().filter_map(move |face| line_on_disc(&here(face), axes, radius))
 }
 
 /// Random numbers of a place and `salt`.
