@@ -1,4 +1,4 @@
-//! The part of a kernel's disc that lies on a rectangle, and before straight lines.
+//! The part of a kernel's disc that lies on a rectangle, before straight lines, among segments, and in a circle.
 
 use super::Kernel;
 use crate::geometry::Rectangle;
@@ -80,7 +80,7 @@ pub fn share_before(kernel: Kernel, lines: &[(DVec2, f64)]) -> f64 {
 
 /// The integral of the disc's kernel over what is before lines, as [`share_before`], and seen from its centre among segments, in units of the
 /// radius. From angle to angle at which one begins, ends or crosses another the same one is nearest, or none: what is before it is a triangle.
-/// Segments through the centre itself hide nothing.
+/// What a segment through the centre itself hides is for rounding to say.
 ///
 /// # Returns
 /// \[1\], as exact as [`disc_share`]
@@ -95,6 +95,8 @@ pub fn share_among(kernel: Kernel, lines: &[(DVec2, f64)], segments: &[[DVec2; 2
     for (index, one) in segments.iter().enumerate() {
         turns.extend(segments[..index].iter().filter_map(|other| crossing(one, other)));
     }
+    // One at the centre is in no direction.
+    turns.retain(|place| *place != DVec2::ZERO);
     let mut turns: Vec<(f64, DVec2)> =
         turns.into_iter().map(|place| (libm::atan2(place.y, place.x), place)).collect();
     turns.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -132,8 +134,11 @@ fn in_disc([a, b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
     let length = way.length();
     let (middle, away) = (-a.dot(way) / length, a.perp_dot(way) / length);
     let half = ((1.0 - away.abs()).max(0.0) * (1.0 + away.abs())).sqrt();
-    let (start, end) = ((middle - half).max(0.0) / length, (middle + half).min(length) / length);
-    (start < end).then(|| [a + way * start, a + way * end])
+    let (start, end) = (middle - half, middle + half);
+    // An end in the disc stays as it is: counted from the other one, far off, it would move.
+    let first = if start > 0.0 { a + way * (start / length) } else { a };
+    let last = if end < length { a + way * (end / length) } else { b };
+    (start.max(0.0) < end.min(length)).then_some([first, last])
 }
 
 /// Where two segments cross.
@@ -314,13 +319,24 @@ mod tests {
             if let Some(&[a, b]) = segments.first() {
                 segments.extend([[a, b], [b, 1.1 * a]]);
             }
+            match trial % 5 {
+                // Ends at the centre, one of them with another end at the angle 0.
+                1 => segments
+                    .extend([[DVec2::ZERO, DVec2::new(-0.5, -0.3)], [DVec2::X * 0.5, DVec2::new(0.5, -0.5)]]),
+                // Far off at one end, hardly off the centre at the other.
+                2 => segments.push([DVec2::new(5e6, 0.5), DVec2::new(1e-9, 3e-10)]),
+                _ => (),
+            }
             if trial % 4 == 3 {
                 segments.extend([0.01, -0.02].map(|y| [DVec2::new(-0.8, y), DVec2::new(2.0, y)]));
             }
             let rays = 40_000;
             let reach = |ray: u32| {
                 let (sin, cos) = crate::math::sin_cos(2.0 * PI * (f64::from(ray) + 0.5) / f64::from(rays));
-                let met = segments.iter().filter_map(|segment| along(segment, DVec2::new(cos, sin)));
+                // From the nearer end, which counting from one far off would move.
+                let outwards =
+                    |[a, b]: &[DVec2; 2]| if a.length() <= b.length() { [*a, *b] } else { [*b, *a] };
+                let met = segments.iter().filter_map(|ends| along(&outwards(ends), DVec2::new(cos, sin)));
                 kernel.within_disc(met.fold(1.0, f64::min))
             };
             let expected = (0..rays).map(reach).sum::<f64>() / f64::from(rays);

@@ -65,8 +65,8 @@ impl RayEstimator {
     /// # Limits
     /// the stretch is cut square at its ends: if it is not clipped the light of a length of (2/(3 pi)) r tan(theta) is missing at a
     /// face that the ray meets aslant (uniform kernel), and what bodies beside the ray hide; clipped beside
-    /// curved bodies or among other media a photon is divided by no less than 1/32 of the kernel within its distance, so that gaps thinner
-    /// than a fortieth of the radius come out too dark there
+    /// curved bodies, among other media, and beside any body in a ball a photon is divided by no less than 1/32 of the kernel within its
+    /// distance, so that gaps thinner than a twentieth of the radius come out too dark there
     pub fn radiance(
         &self,
         map: &PhotonMap,

@@ -101,7 +101,8 @@ impl Sheets {
                 continue;
             }
             // Both ends beyond the disc: a line on it.
-            let (towards, away) = (nearest.normalize_or_zero(), nearest.length());
+            let across = a.perp_dot(way) / way.length();
+            let (towards, away) = (-way.perp().normalize() * across.signum(), across.abs());
             if a.length_squared().min(b.length_squared()) >= 1.0 && away > 0.0 {
                 lines.push((towards, away));
             } else {
@@ -109,8 +110,9 @@ impl Sheets {
             }
         }
         segments.retain(|ends| {
-            let is_behind =
-                |(towards, away): &(DVec2, f64)| ends.iter().all(|end| end.dot(*towards) >= away - ON_LINE);
+            let is_behind = |(towards, away): &(DVec2, f64)| {
+                ends.iter().all(|end| end.dot(*towards) >= (away - ON_LINE).max(0.0))
+            };
             !lines.iter().any(is_behind)
         });
         if segments.is_empty() {
@@ -126,7 +128,7 @@ mod tests {
     use crate::geometry::{Cuboid, Shape};
     use crate::math::{sin_cos, warp};
     use crate::rng::{Purpose, Stream};
-    use std::f64::consts::TAU;
+    use std::f64::consts::{PI, TAU};
 
     /// A rectangle of any size and place about the middle of a box.
     fn rectangle(stream: &mut Stream, size: f64) -> Rectangle {
@@ -174,5 +176,35 @@ mod tests {
             parted += usize::from(!rectangles.is_empty() && expected < 1.0);
         }
         assert!(whole > 20 && parted > 200, "{whole} {parted}");
+    }
+
+    /// Between plates far larger than the disc, alone and with a wall from one to the other: a strip, or one that ends at the wall, however
+    /// narrow.
+    #[test]
+    fn narrow_gaps_are_as_wide_as_they_are() {
+        let mut stream = Stream::new(8, Purpose::Synthetic, 0, 0);
+        for trial in 0..200 {
+            let axes = Frame::new(warp::square_to_sphere(stream.pair()));
+            let (x, y, z) = (axes.x, axes.y, axes.z);
+            let half = [3.0, 15.0, 1e3][trial % 3];
+            let gap = [1e-2, 1e-4, 1e-6][trial / 3 % 3];
+            let below = gap * (0.1 + 0.8 * stream.unit());
+            let plate = |at: f64| {
+                Rectangle::new(y * at - (x + z) * half, x * (2.0 * half), z * (2.0 * half)).unwrap()
+            };
+            let wall = Rectangle::new(x * 0.3 - y - z, y * 2.0, z * 2.0).unwrap();
+            let plates = [plate(-below), plate(gap - below)];
+            let ray = Ray::new(-z, z);
+            let share = |rectangles: &[Rectangle]| {
+                Sheets::new(&ray, rectangles.iter().copied(), Vec::new()).share(Kernel::Uniform, 1.0, 1.0)
+            };
+            // What the disc's curve takes away is of the third power.
+            for (found, expected) in
+                [(share(&plates), 2.0 * gap / PI), (share(&[&plates[..], &[wall]].concat()), 1.3 * gap / PI)]
+            {
+                let error = gap * gap + 1e-14 * half / gap;
+                assert!((found / expected - 1.0).abs() < error, "{half} {gap} {below}: {found} {expected}");
+            }
+        }
     }
 }

@@ -82,7 +82,7 @@ impl DiscShare {
 }
 
 /// Random numbers of a place and `salt`.
-pub(super) fn stream_of(place: DVec3, salt: u64) -> Stream {
+fn stream_of(place: DVec3, salt: u64) -> Stream {
     let [x, y, z] = place.to_array().map(f64::to_bits);
     Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32))
 }
