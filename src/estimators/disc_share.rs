@@ -97,20 +97,20 @@ pub fn share_among(kernel: Kernel, lines: &[(DVec2, f64)], segments: &[[DVec2; 2
     }
     // One at the centre is in no direction.
     turns.retain(|place| *place != DVec2::ZERO);
-    let mut turns: Vec<(f64, DVec2)> =
+    let mut turns: Vec<Turn> =
         turns.into_iter().map(|place| (libm::atan2(place.y, place.x), place)).collect();
     turns.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
     let Some((first, place)) = turns.first().copied() else { return 1.0 };
     turns.push((first + 2.0 * PI, place));
     // Of each sector what is nearest in it.
-    let nearest = |sector: &[(f64, DVec2)]| {
+    let nearest = |sector: &[Turn]| {
         let (sin, cos) = crate::math::sin_cos(0.5 * (sector[0].0 + sector[1].0));
         let away = |(index, ends)| Some((index, along(ends, DVec2::new(cos, sin))?));
         let nearest = segments.iter().enumerate().filter_map(away).min_by(|(_, a), (_, b)| a.total_cmp(b));
         (nearest.map(|(index, _)| index), sector[0], sector[1])
     };
     let sectors: Vec<_> = turns.windows(2).map(nearest).collect();
-    let seen = |run: &[(Option<usize>, (f64, DVec2), (f64, DVec2))]| {
+    let seen = |run: &[(Option<usize>, Turn, Turn)]| {
         let ((index, start, _), (_, _, end)) = (run[0], run[run.len() - 1]);
         let Some(index) = index else { return (end.0 - start.0) / (2.0 * PI) };
         let [a, b] = segments[index];
@@ -118,7 +118,7 @@ pub fn share_among(kernel: Kernel, lines: &[(DVec2, f64)], segments: &[[DVec2; 2
         let away = a.perp_dot(way).abs();
         // Along the segment's line from its place nearest the centre, turning as angles do.
         let along_line = if a.perp_dot(way) >= 0.0 { way } else { -way };
-        let before = |(_, dir): (f64, DVec2)| {
+        let before = |(_, dir): Turn| {
             let (across, along) = (dir.perp_dot(along_line), dir.dot(along_line));
             let height = if across > 0.0 { away * along / across } else { f64::INFINITY.copysign(along) };
             triangle(kernel, away, height.abs()).copysign(height)
@@ -127,6 +127,9 @@ pub fn share_among(kernel: Kernel, lines: &[(DVec2, f64)], segments: &[[DVec2; 2
     };
     sectors.chunk_by(|a, b| a.0 == b.0).map(seen).sum()
 }
+
+/// An angle, and a place in its direction.
+type Turn = (f64, DVec2);
 
 /// The part of a segment in the unit disc about 0.
 fn in_disc([a, b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
