@@ -245,7 +245,7 @@ fn a_uniform_source_comes_out_right_beside_walls() {
         [("alone", known), ("beside a wall", known.about(&walls)), ("among sheets", known.about(&sheets))]
     {
         let mut moments = [[Moments::new(); 5]; 2];
-        for replicate in 0..150 {
+        for replicate in 0..260 {
             let map = synthetic.map(Number::Expected(10_000), 12, replicate).unwrap();
             for (is_clipped, moments) in [true, false].into_iter().zip(&mut moments) {
                 for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
