@@ -5,7 +5,7 @@ use super::emission::emissive;
 use super::{Bundle, EmissionCell, LightSample, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::math::{Frame, Ray, cosine_pair, sin, warp};
+use crate::math::{Frame, Interval, Ray, cosine_pair, sin, warp};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -99,6 +99,41 @@ impl Spot {
         self.power * (self.falloff(cosine_pair(self.frame.z, dir).0) / (PI * (self.full + self.edge)))
     }
 
+    /// The part of a line that it shines on, its cone's: all of it for cones wider than a half space, which may leave out a part
+    /// in the middle; none where the line passes the cone.
+    pub fn lit(&self, ray: &Ray) -> Option<Interval> {
+        let all = Interval { start: f64::NEG_INFINITY, end: f64::INFINITY };
+        if self.edge >= 1.0 {
+            return Some(all);
+        }
+        // From the point of the line nearest to the apex, whose distance from it keeps its digits.
+        let nearest = (self.position - ray.origin).dot(ray.dir);
+        let (p, d) = (self.frame.to_local(ray.at(nearest) - self.position), self.frame.to_local(ray.dir));
+        // In the double cone sin^2 z^2 is at least cos^2 (x^2 + y^2): a t^2 + 2 b t + c at least 0.
+        let (sin2, cos2) = (self.edge * (2.0 - self.edge), (1.0 - self.edge) * (1.0 - self.edge));
+        let form = |u: DVec3, v: DVec3| sin2 * u.z * v.z - cos2 * (u.x * v.x + u.y * v.y);
+        let (a, b, c) = (form(d, d), form(p, d), form(p, p));
+        let square = b * b - a * c;
+        if a <= 0.0 && square <= 0.0 {
+            return None;
+        }
+        // The root that does not cancel, and the other by their product.
+        let sum = -(b + square.max(0.0).sqrt().copysign(b));
+        let (first, second) = (sum / a, if sum == 0.0 { 0.0 } else { c / sum });
+        let (start, end) = (nearest + first.min(second), nearest + first.max(second));
+        if a > 0.0 {
+            // The line goes from one half of the double cone to the other.
+            let is_ahead = d.z > 0.0;
+            return Some(if is_ahead {
+                Interval { start: end, ..all }
+            } else {
+                Interval { end: start, ..all }
+            });
+        }
+        let is_before = |t: f64| p.z + t * d.z > 0.0;
+        (is_before(first) || is_before(second)).then_some(Interval { start, end })
+    }
+
     pub(super) fn power(&self) -> Spectrum {
         self.power
     }
@@ -172,6 +207,51 @@ fn inverse_flux(share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rng::{Purpose, Stream};
+
+    /// Places are on the lit part where the intensity towards them is above 0, and nowhere else: lines in all directions, past the
+    /// apex at all distances, through it and along the axis, cones from 1e-6 degrees to beyond a half space.
+    #[test]
+    fn lit_parts_are_where_the_light_is() {
+        let mut stream = Stream::new(11, Purpose::Synthetic, 0, 0);
+        let (mut lit, mut dark) = (0, 0);
+        for case in 0..40_000 {
+            let edge_angle = [1e-6, 1e-3, 0.1, 5.0, 30.0, 70.0, 89.9, 90.0, 120.0][case % 9];
+            let sphere = |stream: &mut Stream| warp::square_to_sphere(stream.pair()).normalize();
+            let axis = sphere(&mut stream);
+            let apex = 3.0 * sphere(&mut stream);
+            let spot = Spot::new(apex, axis, (0.5 * edge_angle, edge_angle), Spectrum::ONE).unwrap();
+            // Towards a place in the cone or near it, from anywhere, or along its axis.
+            let depth = 10f64.powf(4.0 * stream.unit() - 3.0);
+            let beside =
+                sphere(&mut stream) * (3.0 * stream.unit() * depth * edge_angle.to_radians().min(1.0));
+            let target = if case % 5 == 0 { apex } else { apex + axis * depth + beside };
+            let dir =
+                if case % 7 == 0 { axis * (1 - 2 * (case % 2) as i32) as f64 } else { sphere(&mut stream) };
+            let ray = Ray::new(target - dir * (5.0 * stream.unit()), dir);
+            let part = spot.lit(&ray);
+            for _ in 0..20 {
+                let away = 10f64.powf(6.0 * stream.unit() - 5.0);
+                let t = (target - ray.origin).dot(dir) + if stream.unit() < 0.5 { away } else { -away };
+                let to = (ray.at(t) - apex).normalize();
+                let one_minus_mu = cosine_pair(axis, to).0;
+                // As many digits as there are in a place about an apex at 3: of the angle, and so of its square.
+                let blur = 1e-14 / ray.at(t).distance(apex) / one_minus_mu.sqrt() + 1e-12;
+                if (one_minus_mu / spot.edge - 1.0).abs() < 8.0 * blur {
+                    continue;
+                }
+                let is_lit = !spot.intensity(to).is_black();
+                let is_inside = part.is_some_and(|part| (part.start..=part.end).contains(&t));
+                let may_be_dark = is_inside && edge_angle >= 90.0;
+                assert!(
+                    is_lit == is_inside || may_be_dark,
+                    "{edge_angle} {case}: {t} of {part:?}, lit {is_lit}"
+                );
+                if is_lit { lit += 1 } else { dark += 1 }
+            }
+        }
+        assert!(lit > 100_000 && dark > 100_000, "{lit} {dark}");
+    }
 
     #[test]
     fn the_flux_is_inverted() {

@@ -63,14 +63,16 @@ impl EqualAngles {
 
     /// Density of [`Self::sample`] [1/L].
     pub fn pdf(&self, t: f64) -> f64 {
-        let Some(angle) = self.angle else { return 0.0 };
+        let Some(angle) = self.angle.filter(|_| (self.span.start..=self.span.end).contains(&t)) else {
+            return 0.0;
+        };
         let past = t - self.nearest;
         1.0 / (angle * (self.distance * self.distance + past * past))
     }
 }
 
-/// Distances on a ray chosen for a light: by equal angles about the point that it comes from, or evenly where a beam
-/// crosses the ray.
+/// Distances on a ray chosen for a light: by equal angles about the point that it comes from, on the part that a spot shines on, or
+/// evenly where a beam crosses the ray.
 pub enum Distances {
     /// About a point.
     EqualAngles(EqualAngles),
@@ -79,8 +81,13 @@ pub enum Distances {
 }
 
 impl Distances {
-    /// Those for a light on a stretch of the ray; none for other lights, and where a beam does not cross it or never leaves it.
+    /// Those for a light on a stretch of the ray; none for other lights, where a spot does not shine on it, and where a beam does
+    /// not cross it or never leaves it.
     pub fn of(light: &Light, ray: &Ray, span: Interval) -> Option<Self> {
+        let span = match light {
+            Light::Spot(spot) => spot.lit(ray)?.intersection(span)?,
+            _ => span,
+        };
         if let Some(apex) = light.apex() {
             return Some(Distances::EqualAngles(EqualAngles::new(ray, apex, span)));
         }

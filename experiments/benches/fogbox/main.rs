@@ -1,11 +1,12 @@
-//! The path tracer on a box of fog, beside Mitsuba 3's volumetric path tracer, in turn, in one run on one thread each.
+//! The path tracer on a box of fog, and on scenes that are no boxes, beside Mitsuba 3's volumetric path tracer, in turn, in one run on one
+//! thread each.
 //!
-//! `cargo bench -p turbid-benches --bench fogbox -- iso` runs the fogs whose name contains a word; a number among the
+//! `cargo bench -p turbid-benches --bench fogbox -- iso` runs the scenes whose name contains a word; a number among the
 //! words is that of the rounds.
 //!
 //! Efficiency is 1/(mean squared error x processor seconds), over pixels and channels. Of path tracers the error is the
 //! spread of independent rounds; that their means are right is tested beside it, on the mean radiance of the picture,
-//! against converged values of an independent renderer. Of the photon mapper (`-- maps`) it is the error against the mean
+//! against converged values of an independent renderer, outside of the box against the first row. Of the photon mapper (`-- maps`) it is the error against the mean
 //! of all path-traced rounds, split into the spread between maps and the rest, its bias. `-- lines` reads the volume map in
 //! balls along each ray, about it and by beams.
 //!
@@ -15,6 +16,7 @@
 
 mod lines;
 mod maps;
+mod others;
 mod peer;
 mod scenes;
 
@@ -22,9 +24,12 @@ use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
 use peer::Peer;
 use std::io::Write;
+use std::path::Path;
+use turbid::exchange::to_mitsuba;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Method, Streams};
+use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
 /// Width and height of the picture in pixels.
@@ -54,52 +59,89 @@ fn main() -> Result<()> {
     }
     let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|word| name.contains(word));
     let mut out = std::io::stdout().lock();
-    let mut peers = Vec::new();
-    for variant in ["scalar_rgb", "llvm_ad_rgb"] {
-        match Peer::start(variant, &scenes::folder().join("fogbox")) {
-            Ok(peer) => peers.push((variant, peer)),
-            Err(why) => writeln!(out, "Mitsuba {variant} is not beside it: {why:#}.")?,
-        }
-    }
     writeln!(
         out,
         "{WIDTH} x {WIDTH} pixels, {SAMPLES} samples per pixel and round, {rounds_wanted} rounds in turn"
     )?;
     writeln!(
         out,
-        "{:4} {:20} {:>8} {:>12} {:>22} {:>9} {:>7}",
-        "fog", "", "s", "1/(MSE s)", "times the first", "mean", "z"
+        "{:5} {:20} {:>8} {:>12} {:>22} {:>9} {:>7}",
+        "", "", "s", "1/(MSE s)", "times the first", "mean", "z"
     )?;
     for (fog, converged) in FOGS {
         let has_maps = fog == "iso" && is_wanted("maps");
         if !is_wanted(fog) && !has_maps {
             continue;
         }
-        let scene = scenes::load(fog)?;
-        let camera = scenes::camera()?;
-        let mut rounds: Vec<(String, Vec<Round>)> =
-            peers.iter().map(|(variant, _)| (format!("Mitsuba {variant}"), Vec::new())).collect();
-        rounds.push(("turbid paths".into(), Vec::new()));
-        for (_, peer) in &mut peers {
-            peer.render(fog, 1, 0)?;
-        }
-        for round in 0..rounds_wanted {
-            for ((_, peer), (_, rounds)) in peers.iter_mut().zip(&mut rounds) {
-                rounds.push(peer.render(fog, SAMPLES, round + 1)?);
-            }
-            if let Some((_, ours)) = rounds.last_mut() {
-                ours.push(by_paths(&scene, &camera, round)?);
-            }
-        }
-        for (name, ours) in &rounds {
-            let first = rounds.first().map_or(ours, |(_, first)| first);
-            line(&mut out, fog, name, ours, first, converged)?;
-        }
+        let (scene, camera) = (scenes::load(fog)?, scenes::camera()?);
+        let folder = scenes::folder().join("fogbox");
+        let rounds = in_turn(&mut out, fog, &folder, (&scene, &camera), rounds_wanted)?;
+        lines_of(&mut out, fog, &rounds, Some((converged, CONVERGED_ERROR)))?;
         if has_maps {
             maps::compare(&mut out, &scene, &camera, &rounds)?;
         }
     }
+    for name in others::OTHERS.into_iter().filter(|name| is_wanted(name)) {
+        let (scene, peers) = others::load(name)?;
+        let camera = scene.camera().context("no camera")?;
+        let folder = tempfile::tempdir()?;
+        let exported = to_mitsuba(&peers, name)?;
+        std::fs::write(folder.path().join(format!("{name}.xml")), &exported.text)?;
+        for file in &exported.files {
+            std::fs::write(folder.path().join(&file.name), &file.bytes)?;
+        }
+        let rounds = in_turn(&mut out, name, folder.path(), (&scene, camera), rounds_wanted)?;
+        lines_of(&mut out, name, &rounds, None)?;
+    }
     Ok(())
+}
+
+/// Rounds of the peer's variants that render the scene of this name in a folder, and of the path tracer, in turn.
+fn in_turn(
+    out: &mut impl Write,
+    name: &str,
+    folder: &Path,
+    (scene, camera): (&Scene, &Camera),
+    count: u64,
+) -> Result<Vec<(String, Vec<Round>)>> {
+    let (mut peers, mut rounds) = (Vec::new(), Vec::new());
+    for variant in ["scalar_rgb", "llvm_ad_rgb"] {
+        match Peer::start(variant, folder, name) {
+            Ok(peer) => {
+                peers.push(peer);
+                rounds.push((format!("Mitsuba {variant}"), Vec::new()));
+            }
+            Err(why) => writeln!(out, "Mitsuba {variant} is not beside it: {why:#}.")?,
+        }
+    }
+    let mut ours = Vec::new();
+    for round in 0..count {
+        for (peer, (_, rounds)) in peers.iter_mut().zip(&mut rounds) {
+            rounds.push(peer.render(name, SAMPLES, round + 1)?);
+        }
+        ours.push(by_paths(scene, camera, round)?);
+    }
+    rounds.push(("turbid paths".into(), ours));
+    Ok(rounds)
+}
+
+/// The rows of a scene; means are compared with a known value and its standard error, or with the first row's.
+fn lines_of(
+    out: &mut impl Write,
+    name: &str,
+    rounds: &[(String, Vec<Round>)],
+    known: Option<(f64, f64)>,
+) -> Result<()> {
+    let (_, first) = &rounds[0];
+    let known = known.unwrap_or_else(|| mean_of(first));
+    rounds.iter().try_for_each(|(row, ours)| line(out, (name, row), ours, first, known))
+}
+
+/// Mean radiance of the pictures of all rounds, and its standard error.
+fn mean_of(rounds: &[Round]) -> (f64, f64) {
+    let means: Moments =
+        rounds.iter().map(|r| r.pixels.iter().sum::<f64>() / r.pixels.len() as f64).collect();
+    (means.mean(), means.std_error())
 }
 
 /// One round of the path tracer.
@@ -139,11 +181,10 @@ fn efficiency(errors: &[f64], rounds: &[Round], chosen: &[usize]) -> f64 {
 
 fn line(
     out: &mut impl Write,
-    fog: &str,
-    name: &str,
+    (scene, name): (&str, &str),
     rounds: &[Round],
     first: &[Round],
-    converged: f64,
+    (known, known_error): (f64, f64),
 ) -> Result<()> {
     let count = rounds.len();
     let (errors, errors_of_first) = (squared_errors(rounds), squared_errors(first));
@@ -157,16 +198,13 @@ fn line(
         })
         .collect();
     ratios.sort_unstable_by(f64::total_cmp);
-    let means: Vec<f64> =
-        rounds.iter().map(|r| r.pixels.iter().sum::<f64>() / r.pixels.len() as f64).collect();
-    let mean = means.iter().sum::<f64>() / count as f64;
-    let variance = means.iter().map(|m| (m - mean) * (m - mean)).sum::<f64>() / (count - 1) as f64;
-    let z = (mean - converged) / (variance / count as f64 + CONVERGED_ERROR * CONVERGED_ERROR).sqrt();
+    let (mean, mean_error) = mean_of(rounds);
+    let z = (mean - known) / mean_error.hypot(known_error);
     let seconds = rounds.iter().map(|r| r.seconds).sum::<f64>() / count as f64;
     let ratio = ours / efficiency(&errors_of_first, first, &all);
     writeln!(
         out,
-        "{fog:4} {name:20} {seconds:8.3} {ours:12.1} {ratio:7.2} ({:5.2} to {:5.2}) {mean:9.5} {z:7.2}",
+        "{scene:5} {name:20} {seconds:8.3} {ours:12.1} {ratio:7.2} ({:5.2} to {:5.2}) {mean:9.5} {z:7.2}",
         ratios[49], ratios[1949]
     )?;
     Ok(())

@@ -1,7 +1,7 @@
-"""The fogbox by Mitsuba 3's volumetric path tracer, again and again: the peer of the bench `fogbox`.
+"""Scenes by Mitsuba 3's volumetric path tracer, again and again: the peer of the bench `fogbox`.
 
-Usage: peer.py VARIANT FOLDER, where FOLDER holds the box (white.obj, red.obj, green.obj, light.obj). Reads lines
-`fog samples seed` (fog is iso, hg or het) and answers each with the processor seconds of the picture on the standard
+Usage: peer.py VARIANT FOLDER, where FOLDER holds the box (white.obj, red.obj, green.obj, light.obj) or scenes of Mitsuba. Reads
+lines `scene samples seed` (iso, hg or het is the box; any other is the file of this name) and answers each with the processor seconds of the picture on the standard
 output as text, one line, and then its 128 x 128 x 3 radiances as little-endian float32.
 """
 
@@ -46,6 +46,8 @@ def matt(file, rgb):
 
 
 def scene(name):
+    if name not in G:
+        return mi.load_file(f"{FOLDER}/{name}.xml")
     place = mi.ScalarTransform4f().look_at(origin=[0, 0, 0.95], target=[0, 0, 0], up=[0, 1, 0])
     film = {"type": "hdrfilm", "width": WIDTH, "height": WIDTH, "rfilter": {"type": "box"}}
     film |= {"pixel_format": "rgb", "component_format": "float32"}
@@ -80,7 +82,7 @@ def main():
         if name not in scenes:
             scenes[name] = scene(name)
         start = time.process_time()
-        image = np.array(mi.render(scenes[name], spp=int(samples), seed=int(seed)), dtype="<f4")
+        image = np.array(mi.render(scenes[name], spp=int(samples), seed=int(seed)), dtype="<f4")[..., :3]
         seconds = time.process_time() - start
         sys.stdout.buffer.write(f"{seconds!r}\n".encode() + image.tobytes())
         sys.stdout.buffer.flush()

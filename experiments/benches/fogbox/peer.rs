@@ -1,4 +1,4 @@
-//! A Python that renders boxes of fog with Mitsuba, asked line by line.
+//! A Python that renders with Mitsuba, asked line by line.
 
 use crate::{Round, WIDTH};
 use anyhow::{Context, Result, bail};
@@ -14,8 +14,8 @@ pub struct Peer {
 }
 
 impl Peer {
-    /// Starts a variant of Mitsuba on the box whose geometry is in `folder`; fails where it cannot render.
-    pub fn start(variant: &str, folder: &Path) -> Result<Self> {
+    /// Starts a variant of Mitsuba on the scenes of a folder; fails where it cannot render the one of this name.
+    pub fn start(variant: &str, folder: &Path, scene: &str) -> Result<Self> {
         let python = std::env::var("TURBID_PYTHON").unwrap_or_else(|_| "python3".into());
         let known = Command::new(&python)
             .args(["-c", "import mitsuba, numpy"])
@@ -37,13 +37,13 @@ impl Peer {
         let questions = process.stdin.take().context("no way to ask")?;
         let answers = BufReader::new(process.stdout.take().context("no way to listen")?);
         let mut peer = Peer { process, questions, answers };
-        peer.render("iso", 1, 0).context("it does not render")?;
+        peer.render(scene, 1, 0).context("it does not render")?;
         Ok(peer)
     }
 
     /// One picture.
-    pub fn render(&mut self, fog: &str, samples: u64, seed: u64) -> Result<Round> {
-        writeln!(self.questions, "{fog} {samples} {seed}")?;
+    pub fn render(&mut self, scene: &str, samples: u64, seed: u64) -> Result<Round> {
+        writeln!(self.questions, "{scene} {samples} {seed}")?;
         let mut line = String::new();
         self.answers.read_line(&mut line)?;
         let seconds = line.trim().parse().with_context(|| format!("the peer said {line:?}"))?;
