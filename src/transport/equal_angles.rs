@@ -137,6 +137,7 @@ mod tests {
                         angle(t) / angle(span.1)
                     }
                 };
+                assert_eq!([span.0 - 1e-9, span.1 + 1e-9].map(|t| angles.pdf(t)), [0.0; 2]);
                 for i in 0..100 {
                     let u = (f64::from(i) + 0.5) / 100.0;
                     let t = angles.sample(u).unwrap();

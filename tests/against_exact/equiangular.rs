@@ -139,3 +139,48 @@ fn rays_through_the_lamp_itself() {
         }
     }
 }
+
+/// Rays across a spot's cone, along it, near its edge, towards the lamp and away from it, cones from a quarter of a degree to
+/// wider than a half space: light scattered once is the integral over all of the ray, and intervals are as narrow as those of a
+/// lamp that shines everywhere, since no distance is chosen in the dark.
+#[test]
+fn rays_across_the_cone_of_a_spot() {
+    let (sigma_t, albedo) = (0.7, 0.9);
+    let (low, high) = (DVec3::splat(-3.0), DVec3::splat(3.0));
+    let fog = Region {
+        shape: cuboid(low, high),
+        medium: homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(albedo), 0.0),
+    };
+    // Samples of the same numbers would err to the same side everywhere.
+    let mut seed = 0;
+    for edge in [0.25, 5.0, 30.0, 80.0, 90.0, 130.0] {
+        let spot = Spot::new(DVec3::ZERO, DVec3::Z, (0.6 * edge, edge), Spectrum::ONE).unwrap();
+        let scene = bounded(vec![fog.clone()], Vec::new(), vec![Light::Spot(spot)]);
+        // Widths across the cone at height 1; beyond 60 degrees those of 60.
+        let width = sin_cos(f64::min(edge, 60.0).to_radians()).0;
+        let aslant = DVec3::new(0.8, 0.1, 0.6).normalize();
+        let cases = [
+            (DVec3::new(-2.5, 0.3 * width, 1.0), DVec3::X),
+            (DVec3::new(-2.5, 0.0, 0.2), DVec3::X),
+            (DVec3::new(0.7 * width, 0.2 * width, 2.5), -DVec3::Z),
+            (DVec3::new(0.4 * width, -0.1 * width, -2.5), DVec3::Z),
+            (DVec3::new(0.5 * width, 0.0, 1.0) - 2.0 * aslant, aslant),
+            (DVec3::new(0.2 * width, 0.1 * width, 1.0), aslant),
+        ];
+        for (origin, dir) in cases {
+            let ray = Ray::new(origin, dir);
+            let end = scene.segments(&ray, f64::INFINITY, 0).iter().last().unwrap().interval.end;
+            let of = |t: f64| {
+                let p = ray.at(t);
+                let r = p.length();
+                sigma_t * albedo / FOUR_PI * exp(-sigma_t * (t + r)) * spot.intensity(p / r)[0] / (r * r)
+            };
+            // The finest detail is where a narrow cone is crossed.
+            let expected = integrate(0.0, end, 5_000, of);
+            seed += 1;
+            let got = paths(&scene, Quantity::Radiance(ray), Orders::only(1), 1 << 14, seed);
+            let what = format!("cone of {edge} degrees, from {origin} along {dir}");
+            verdict::agrees(&what, &got[0], (expected, 1e-6 * expected), 0.1 * expected, seed);
+        }
+    }
+}
