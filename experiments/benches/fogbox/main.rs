@@ -199,7 +199,7 @@ fn line(
         .collect();
     ratios.sort_unstable_by(f64::total_cmp);
     let (mean, mean_error) = mean_of(rounds);
-    let z = (mean - known) / mean_error.hypot(known_error);
+    let z = (mean - known) / (mean_error * mean_error + known_error * known_error).sqrt();
     let seconds = rounds.iter().map(|r| r.seconds).sum::<f64>() / count as f64;
     let ratio = ours / efficiency(&errors_of_first, first, &all);
     writeln!(
