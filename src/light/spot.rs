@@ -207,7 +207,9 @@ fn inverse_flux(share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::exp;
     use crate::rng::{Purpose, Stream};
+    use std::f64::consts::LN_10;
 
     /// Places are on the lit part where the intensity towards them is above 0, and nowhere else: lines in all directions, past the
     /// apex at all distances, through it and along the axis, cones from 1e-6 degrees to beyond a half space.
@@ -222,7 +224,7 @@ mod tests {
             let apex = 3.0 * sphere(&mut stream);
             let spot = Spot::new(apex, axis, (0.5 * edge_angle, edge_angle), Spectrum::ONE).unwrap();
             // Towards a place in the cone or near it, from anywhere, or along its axis.
-            let depth = 10f64.powf(4.0 * stream.unit() - 3.0);
+            let depth = exp(LN_10 * (4.0 * stream.unit() - 3.0));
             let beside =
                 sphere(&mut stream) * (3.0 * stream.unit() * depth * edge_angle.to_radians().min(1.0));
             let target = if case % 5 == 0 { apex } else { apex + axis * depth + beside };
@@ -231,7 +233,7 @@ mod tests {
             let ray = Ray::new(target - dir * (5.0 * stream.unit()), dir);
             let part = spot.lit(&ray);
             for _ in 0..20 {
-                let away = 10f64.powf(6.0 * stream.unit() - 5.0);
+                let away = exp(LN_10 * (6.0 * stream.unit() - 5.0));
                 let t = (target - ray.origin).dot(dir) + if stream.unit() < 0.5 { away } else { -away };
                 let to = (ray.at(t) - apex).normalize();
                 let one_minus_mu = cosine_pair(axis, to).0;
