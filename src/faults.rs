@@ -52,6 +52,8 @@ pub enum Fault {
     RejectedSetRadius,
     /// A march sums its steps and forgets how long they are.
     StepForgotten,
+    /// A gather that steps of a march share counts for one of them.
+    SharedForOne,
     /// A path's radiance is not scaled where it is refracted.
     RadianceUnscaled,
     /// A photon's power is scaled like radiance where it is refracted.
@@ -142,7 +144,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 65] = [
+    pub const ALL: [Fault; 66] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -165,6 +167,7 @@ impl Fault {
         Fault::RootForgotten,
         Fault::RejectedSetRadius,
         Fault::StepForgotten,
+        Fault::SharedForOne,
         Fault::RadianceUnscaled,
         Fault::PhotonPowerScaled,
         Fault::FresnelForgotten,

@@ -43,6 +43,7 @@ pub struct Options {
     step: Option<f64>,
     step_rule: String,
     adapt: Option<f64>,
+    spacing: Option<f64>,
     jitter: bool,
     boundary: String,
     edges: String,
@@ -136,7 +137,8 @@ impl Readout {
     /// Settings of the mapper for a scene whose maps are not known.
     pub fn settings(&self, scene: &Scene) -> Result<Settings> {
         let size = scene_size(scene);
-        let Options { radius, max_radius, near, step, adapt, gather_rays, jitter, .. } = self.options;
+        let Options { radius, max_radius, near, step, adapt, spacing, gather_rays, jitter, .. } =
+            self.options;
         let gather = |k: Option<usize>| match radius {
             Some(radius) => Gather::radius(radius).context("radius"),
             None => {
@@ -194,6 +196,12 @@ impl Readout {
         settings.march.is_jittered = jitter;
         let shortest = Positive::new("the shortest step", 0.25 * settings.march.step.get())?;
         settings.march.adaptive = (tolerance > 0.0).then_some(Adaptive { tolerance, shortest });
+        if let Some(spacing) = spacing {
+            if !(spacing >= 0.0 && spacing.is_finite()) {
+                return Err(anyhow!("spacing is {spacing}; allowed: finite and at least 0"));
+            }
+            settings.spacing = spacing;
+        }
         Ok(settings)
     }
 }

@@ -86,7 +86,7 @@ _METHODS = {
     ),
     "render": dict.fromkeys(
         "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius ray_k beam_radius beam_blur kernel caustic_kernel "
-        "gather_rays near step step_rule adapt jitter boundary edges".split(),
+        "gather_rays near step step_rule adapt spacing jitter boundary edges".split(),
         ("photons",),
     ),
 }
@@ -351,6 +351,7 @@ def render(
     step: Optional[float] = None,
     step_rule: str = "integrated",
     adapt: Optional[float] = None,
+    spacing: Optional[float] = None,
     jitter: bool = True,
     boundary: str = "clipped",
     edges: str = "clipped",
@@ -381,6 +382,7 @@ def render(
     gather_rays : rays of a final gathering; 0 reads the global map where the eye looks: fast, and blotchy
     near : rays of a final gathering shorter than this are traced on [L]
     step, step_rule, adapt, jitter : the march through media; the longest step is in [L]
+    spacing : steps within this many radii of a gather share one; 0 for one a step
     boundary, edges : what estimates do where media and surfaces end
     """
     _refuse_idle(render, locals())
@@ -404,6 +406,7 @@ def render(
         step=_optional_real("step", step),
         step_rule=step_rule,
         adapt=_optional_real("adapt", adapt),
+        spacing=_optional_real("spacing", spacing),
         jitter=bool(jitter),
         boundary=boundary,
         edges=edges,

@@ -131,6 +131,7 @@ pub fn settings(gather_rays: u32) -> Settings {
             is_jittered: true,
             adaptive: None,
         },
+        spacing: 0.0,
     }
 }
 

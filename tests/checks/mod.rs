@@ -10,6 +10,7 @@ pub mod connected;
 pub mod emitters;
 pub mod flights;
 pub mod fog;
+pub mod gathers;
 pub mod glass;
 pub mod ledger;
 pub mod light;

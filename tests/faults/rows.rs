@@ -1,8 +1,9 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    along_rays, beams, cell, color, connected, emitters, flights, fog, glass, ledger, light, media, numbers,
-    outputs, phase, planes, point_light, points, progressive, shading, slab, threads, walls, weights,
+    along_rays, beams, cell, color, connected, emitters, flights, fog, gathers, glass, ledger, light, media,
+    numbers, outputs, phase, planes, point_light, points, progressive, shading, slab, threads, walls,
+    weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -148,6 +149,11 @@ const fn inside(fault: Fault) -> Row {
         Fault::StepForgotten => {
             ("a march forgets its step", "a_constant_source_is_marched_to_its_integral", |_| {
                 walls::a_constant_source_is_marched_to_its_integral()
+            })
+        }
+        Fault::SharedForOne => {
+            ("a gather that steps share counts for one", "steps_that_share_a_gather_have_their_sum", |_| {
+                gathers::steps_that_share_a_gather_have_their_sum()
             })
         }
         Fault::RadianceUnscaled => {
@@ -437,6 +443,7 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::PieceStretched),
     inside(Fault::TrackStretched),
     inside(Fault::WindowUnfair),
+    inside(Fault::SharedForOne),
     inside(Fault::ClustersForgotten),
     inside(Fault::FreedomOfThree),
     inside(Fault::VarianceOfRed),

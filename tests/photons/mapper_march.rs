@@ -1,5 +1,6 @@
 //! The march through media against closed forms: rules of steps, segments one behind the other, media without end.
 
+use crate::checks::gathers::steps_that_share_a_gather_have_their_sum;
 use crate::checks::media::{layered, varying};
 use crate::support::quadrature::integrate;
 use crate::support::run::sensor;
@@ -124,6 +125,11 @@ fn random_steps_are_unbiased_where_density_varies() {
         let (found, _) = single(&scene, march(step, StepRule::Integrated, true), &ray, 100_000, 6);
         verdict::agrees(&format!("steps of {step}"), &found, (expected, 1e-6), 0.08 * expected, 6);
     }
+}
+
+#[test]
+fn steps_share_gathers_without_a_bias() {
+    steps_that_share_a_gather_have_their_sum();
 }
 
 /// Fog behind a medium whose transmittance is estimated, often by 0: what lies behind is seen through it none the less.

@@ -121,6 +121,7 @@ pub const RENDER: Table = &[
     ("step_rule", PHOTONS),
     ("adapt", PHOTONS),
     ("no_jitter", PHOTONS),
+    ("spacing", PHOTONS),
     ("boundary", PHOTONS),
     ("edges", PHOTONS),
     ("reject", PHOTONS),

@@ -297,6 +297,10 @@ pub struct Readout {
     /// March on places that are not random: no noise, but bands.
     #[arg(long)]
     no_jitter: bool,
+    /// Steps share a gather of the volume map, at one of their places, within this many radii of the last one; 0 for a gather at each step.
+    /// Without effect with --no-jitter and the other step rules [default: 2].
+    #[arg(long)]
+    spacing: Option<f64>,
     /// What volume estimates do where a medium ends or a body stands in it: without it there are no photons, behind it
     /// others. But for none, photons that a body hides from the point do not count.
     #[arg(long, value_enum, default_value = "clipped")]
@@ -524,6 +528,12 @@ impl Readout {
         settings.march.is_jittered = !self.no_jitter;
         let shortest = Positive::new("the shortest step", 0.25 * settings.march.step.get())?;
         settings.march.adaptive = (tolerance > 0.0).then_some(Adaptive { tolerance, shortest });
+        if let Some(spacing) = self.spacing {
+            if !(spacing >= 0.0 && spacing.is_finite()) {
+                return Err(anyhow!("--spacing is {spacing}; allowed: finite and at least 0"));
+            }
+            settings.spacing = spacing;
+        }
         Ok(settings)
     }
 }

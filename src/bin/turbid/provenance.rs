@@ -27,7 +27,8 @@ pub fn map_settings(settings: &MapSettings) -> Value {
 
 /// How maps are read.
 pub fn mapper_settings(settings: &Settings) -> Value {
-    let Settings { global, caustic, volume, slope, clips_discs, gather_rays, near, march } = settings;
+    let Settings { global, caustic, volume, slope, clips_discs, gather_rays, near, march, spacing } =
+        settings;
     let March { step, rule, is_jittered, adaptive } = march;
     let mut of_volume = read((volume.kernel, volume.gather));
     of_volume["boundary"] = json!(volume.treatment.name().replace(' ', "-"));
@@ -57,6 +58,7 @@ pub fn mapper_settings(settings: &Settings) -> Value {
             StepRule::Integrated => "integrated",
         },
         "jitter": is_jittered,
+        "spacing": spacing,
         "adapt": adaptive.map_or(0.0, |adaptive| adaptive.tolerance),
         "shortest_step": adaptive.map(|adaptive| adaptive.shortest.get()),
     })

@@ -109,7 +109,7 @@ impl Visitor for GatherRay<'_, '_, '_> {
             Step::Ahead(_) if walker.order == 0 => self.report.rays.segments += 1,
             Step::Collision(Arrival { walker, position }, number) => {
                 let single = self.mapper.single(walker, position, number, self.report, stream);
-                let multiple = self.mapper.multiple(walker, position, number, self.report);
+                let (multiple, _) = self.mapper.multiple(walker, position, number, self.report);
                 self.found += self.weight * walker.weight * (single + multiple);
             }
             Step::Surface(Arrival { walker, .. }, found) => {

@@ -27,6 +27,11 @@ fn balanced(stored: f64, (from, d): (f64, f64)) -> usize {
     k.round().clamp(LEAST_K as f64, MOST_K) as usize
 }
 
+/// Radii of a gather within which steps of a march share one, where nothing is asked for. In the box of fog a gather at every step
+/// reads each photon several times: pictures of eight samples take 0.56 of the time and have 1.05 of the error, those of one sample
+/// 0.58 and 1.27.
+const SPACING: f64 = 2.0;
+
 /// Steps across a scene, at most, that are taken without being asked for.
 const MOST_DEFAULT_STEPS: f64 = 1e3;
 
@@ -62,6 +67,9 @@ pub struct Settings {
     pub near: f64,
     /// The march through media.
     pub march: March,
+    /// Steps with random places share one gather of the volume map as long as they are within this many radii of the gather before from
+    /// the first of them, at least 0; 0 for one gather a step.
+    pub spacing: f64,
 }
 
 impl Settings {
@@ -89,10 +97,11 @@ impl Settings {
                     shortest: Positive::new("the shortest step", 0.0125 * size)?,
                 }),
             },
+            spacing: 0.0,
         })
     }
 
-    /// What a picture of a scene takes where nothing is asked for: those of its [`scene_size`], steps of equal length.
+    /// What a picture of a scene takes where nothing is asked for: those of its [`scene_size`], steps of equal length, which share gathers.
     ///
     /// The longest step is a twentieth of the scene, as far as that is not longer than the shortest mean free path of media
     /// whose density varies. There a step's light is asked for at one place of the step, and what reaches its near end is a
@@ -109,6 +118,7 @@ impl Settings {
         let mut settings = Settings::for_size(size, k)?;
         settings.march.step = Positive::new("the step", step)?;
         settings.march.adaptive = None;
+        settings.spacing = SPACING;
         Ok(settings)
     }
 
@@ -144,6 +154,12 @@ impl Settings {
     /// Photons of an estimate from the global, the caustic and the volume map; none for a fixed radius.
     pub fn nearest(&self) -> [Option<usize>; 3] {
         [self.global.1, self.caustic.1, self.volume.gather].map(Gather::k)
+    }
+
+    /// Whether steps of a march share gathers.
+    pub(super) fn shares_gathers(&self) -> bool {
+        let march = &self.march;
+        self.spacing > 0.0 && march.is_jittered && march.rule == StepRule::Integrated
     }
 
     /// Whether volume estimates follow a rule of the laboratory about walls.

@@ -4,6 +4,7 @@ use super::{Eye, Mapper, Report};
 use crate::Spectrum;
 use crate::estimators::BeamBlur;
 use crate::estimators::boundary::Boundary;
+use crate::faults::{Fault, planted};
 use crate::integrators::march::{self, LEFT, Source};
 use crate::math::{Interval, Ray, cosine_pair};
 use crate::phase::PhaseFunction;
@@ -34,29 +35,29 @@ impl Mapper<'_> {
         medium.albedo(position) * self.direct(&here, None, report, stream, value, blind)
     }
 
-    /// The same of all other light, from the photons or beams about the point.
+    /// The same of all other light, from the photons or beams about the point, and their radius \[L\].
     pub(super) fn multiple(
         &self,
         walker: &Walker,
         position: DVec3,
         number: usize,
         report: &mut Report,
-    ) -> Spectrum {
+    ) -> (Spectrum, f64) {
         let (medium, wo, volume) = (self.scene.medium(number), -walker.ray.dir, &self.settings.volume);
         let boundary = self.boundary(number);
-        let scattered = if let (Some(across), Some(map)) = (volume.of_beams(), &self.maps.beams) {
+        let (scattered, radius) = if let (Some(across), Some(map)) = (volume.of_beams(), &self.maps.beams) {
             let estimate = across.in_scattered(map, (position, wo), (number, medium), &boundary);
             report.volume.add(&estimate, 2);
-            estimate.value
+            (estimate.value, estimate.radius)
         } else if let Some(map) = &self.maps.volume {
             let estimate = volume.in_scattered(map, position, wo, medium.phase(), Spectrum::ONE, &boundary);
             report.volume.add(&estimate, 3);
             // The volume map counts collisions.
-            estimate.value.over(medium.sigma_t(position))
+            (estimate.value.over(medium.sigma_t(position)), estimate.radius)
         } else {
-            Spectrum::ZERO
+            (Spectrum::ZERO, 0.0)
         };
-        medium.albedo(position) * scattered
+        (medium.albedo(position) * scattered, radius)
     }
 
     /// What estimates are told of what is about a medium.
@@ -156,8 +157,9 @@ impl Eye<'_, '_> {
             self.layers.multiple += seen * estimate.value;
         }
         let march = &mapper.settings.march;
-        let mut source = Fog { eye: self, walker, number };
+        let mut source = Fog { eye: self, walker, number, shared: None, radius: 0.0, found: Spectrum::ZERO };
         march::march(medium, (&walker.ray, span), (march, mapper.size), seen, stream, &mut source);
+        source.gather();
     }
 }
 
@@ -166,6 +168,55 @@ struct Fog<'a, 'm, 's> {
     eye: &'a mut Eye<'m, 's>,
     walker: &'a Walker,
     number: usize,
+    /// Steps that wait for a gather.
+    shared: Option<Shared>,
+    /// Radius of the last gather \[L\], and what it found [W/(L^2 sr)].
+    radius: f64,
+    found: Spectrum,
+}
+
+/// Steps that share a gather, at one of their places, chosen in proportion to what counts most of them.
+struct Shared {
+    /// The place of the first of them.
+    first: DVec3,
+    /// The chosen place, and what a source there counts for \[1\].
+    place: DVec3,
+    weight: Spectrum,
+    /// Sum of the steps' largest weights.
+    sum: f64,
+}
+
+impl Fog<'_, '_, '_> {
+    /// Lets a step share the gather of those before it if it is near them, else starts another one. Which steps share one depends on
+    /// what was read before them alone, so that the sum stays as unbiased as one gather a step.
+    fn share(&mut self, place: DVec3, weight: Spectrum, stream: &mut Stream) {
+        let reach = self.eye.mapper.settings.spacing * self.radius;
+        if self.shared.as_ref().is_some_and(|shared| place.distance(shared.first) >= reach) {
+            self.gather();
+        }
+        let largest = weight.max();
+        let Some(shared) = &mut self.shared else {
+            self.shared = Some(Shared { first: place, place, weight, sum: largest });
+            return;
+        };
+        shared.sum += largest;
+        if stream.unit() * shared.sum < largest {
+            (shared.place, shared.weight) = (place, weight);
+        }
+    }
+
+    /// The gather of all steps that wait for it.
+    fn gather(&mut self) {
+        let Some(Shared { place, weight, sum, .. }) = self.shared.take() else { return };
+        let largest = weight.max();
+        if largest > 0.0 {
+            let mapper = self.eye.mapper;
+            (self.found, self.radius) =
+                mapper.multiple(self.walker, place, self.number, &mut self.eye.report);
+            let steps = if planted(Fault::SharedForOne) { 1.0 } else { sum / largest };
+            self.eye.layers.multiple += weight * self.found * steps;
+        }
+    }
 }
 
 impl Source for Fog<'_, '_, '_> {
@@ -173,19 +224,23 @@ impl Source for Fog<'_, '_, '_> {
         let mapper = self.eye.mapper;
         self.eye.report.steps += 1;
         let sigma_t = mapper.scene.medium(self.number).sigma_t(place);
-        let (mut single, mut multiple) = (Spectrum::ZERO, Spectrum::ZERO);
-        if !sigma_t.is_black() || mapper.scene.plan().is_full {
-            let report = &mut self.eye.report;
-            single = mapper.single(self.walker, place, self.number, report, stream);
-            // Of rays that are read as a whole it is there already.
-            if !mapper.settings.volume.reads_rays() {
-                multiple = mapper.multiple(self.walker, place, self.number, report);
-            }
+        if sigma_t.is_black() && !mapper.scene.plan().is_full {
+            return 0.0;
         }
         let weight = seen * sigma_t * weight;
+        let single = mapper.single(self.walker, place, self.number, &mut self.eye.report, stream);
         self.eye.layers.single += weight * single;
-        self.eye.layers.multiple += weight * multiple;
-        multiple.max()
+        // Of rays that are read as a whole it is there already.
+        if mapper.settings.volume.reads_rays() {
+            return 0.0;
+        }
+        if mapper.settings.shares_gathers() {
+            self.share(place, weight, stream);
+        } else {
+            (self.found, _) = mapper.multiple(self.walker, place, self.number, &mut self.eye.report);
+            self.eye.layers.multiple += weight * self.found;
+        }
+        self.found.max()
     }
 
     fn probed(&mut self, place: DVec3, stream: &mut Stream) -> Spectrum {
