@@ -20,6 +20,8 @@ const ROUNDS: usize = 8;
 const POINTS: u64 = 65_000;
 const BEAMS: u64 = 5_000;
 const SAMPLES: u64 = 1;
+/// Radii of a gather within which steps of a march share one.
+const SPACING: f64 = 1.5;
 /// Radii about rays [mean free paths are 2].
 const RADII: [f64; 3] = [0.1, 0.2, 0.3];
 /// Paths of the reference: samples a pixel of each of its rounds.
@@ -41,27 +43,31 @@ fn ways() -> Result<Vec<Way>> {
     // One random place a ray, in proportion to what reaches the eye from it: unbiased, whatever the step.
     let march = March { step: Positive::new("the step", 4.0)?, adaptive: None, ..standard.march };
     let mut ways = Vec::new();
-    let mut add = |name: String, stored, volume: Estimator, march: March| {
-        let settings = Settings { volume, march, ..standard };
+    let mut add = |name: String, stored, volume: Estimator, march: March, spacing: f64| {
+        let settings = Settings { volume, march, spacing, ..standard };
         ways.push(Way { name, stored, settings, rounds: Vec::new(), looked_at: 0.0 });
     };
     for k in [30, 100] {
         let volume = Estimator { gather: Gather::nearest(k, 1.0)?, ..standard.volume };
-        add(format!("march, k = {k}"), POINTS, volume, standard.march);
-        add(format!("march, one place, k = {k}"), POINTS, volume, march);
+        add(format!("march, k = {k}"), POINTS, volume, standard.march, 0.0);
+        add(format!("march, one place, k = {k}"), POINTS, volume, march, 0.0);
+    }
+    for k in [100, 150] {
+        let volume = Estimator { gather: Gather::nearest(k, 1.0)?, ..standard.volume };
+        add(format!("march, shared, k = {k}"), POINTS, volume, standard.march, SPACING);
     }
     for radius in RADII {
         let of_rays = standard.volume.along_rays(Positive::new("the radius", radius)?);
-        add(format!("points about rays, r = {radius}"), POINTS, of_rays, march);
+        add(format!("points about rays, r = {radius}"), POINTS, of_rays, march, 0.0);
     }
     // The best march and the best radius with twice the photons.
     let twice = Estimator { gather: Gather::nearest(200, 1.0)?, ..standard.volume };
-    add("march, k = 200, twice".into(), 2 * POINTS, twice, standard.march);
+    add("march, k = 200, twice".into(), 2 * POINTS, twice, standard.march, 0.0);
     let of_rays = standard.volume.along_rays(Positive::new("the radius", 0.2)?);
-    add("points, r = 0.2, twice".into(), 2 * POINTS, of_rays, march);
+    add("points, r = 0.2, twice".into(), 2 * POINTS, of_rays, march, 0.0);
     for radius in RADII {
         let of_beams = standard.volume.along_beams(Positive::new("the radius", radius)?);
-        add(format!("beams, r = {radius}"), BEAMS, of_beams, march);
+        add(format!("beams, r = {radius}"), BEAMS, of_beams, march, 0.0);
     }
     Ok(ways)
 }
