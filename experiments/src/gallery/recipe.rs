@@ -55,6 +55,7 @@ pub fn arguments(picture: &Picture, seed: u64) -> anyhow::Result<Vec<String>> {
     flag("--near", picture.near.to_string());
     flag("--step", settings.march.step.get().to_string());
     flag("--adapt", settings.march.adaptive.map_or(0.0, |a| a.tolerance).to_string());
+    flag("--spacing", settings.spacing.to_string());
     flag("--exposure", super::develop::tone(picture.exposure).exposure.to_string());
     flag("--seed", seed.to_string());
     Ok(arguments)
