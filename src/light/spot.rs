@@ -99,8 +99,8 @@ impl Spot {
         self.power * (self.falloff(cosine_pair(self.frame.z, dir).0) / (PI * (self.full + self.edge)))
     }
 
-    /// The part of a line that it shines on, its cone's: all of it for cones wider than a half space, which may leave out a part
-    /// in the middle; none where the line passes the cone.
+    /// The part of a line that it shines on \[L\], whose ends may be infinite: its cone's, all of it for cones wider than a half space,
+    /// which may leave out a part in the middle; none where the line passes the cone by.
     pub fn lit(&self, ray: &Ray) -> Option<Interval> {
         let all = Interval { start: f64::NEG_INFINITY, end: f64::INFINITY };
         if self.edge >= 1.0 {

@@ -76,6 +76,15 @@ fn sizes_and_numbers_out_of_range() {
     refuse(&["--boundary", "open"], &["--boundary", "allowed: none, clipped"]);
     refuse(&["--reject", "all"], &["--reject", "allowed: off, facing"]);
     refuse(&["--step-rule", "far"], &["--step-rule", "allowed: near-end"]);
+    refuse(&["--spacing", "-1"], &["--spacing is -1; allowed: finite and at least 0"]);
+    refuse(
+        &["--spacing", "2", "--no-jitter"],
+        &["--spacing is about random steps; allowed: without --no-jitter"],
+    );
+    refuse(
+        &["--spacing", "2", "--ray-radius", "0.1"],
+        &["--spacing is about steps; allowed: without --ray-radius"],
+    );
     refuse(&["--plan", "none"], &["--plan", "allowed: auto, full"]);
     refuse(&["--glboal", "3"], &["--glboal"]);
     refuse(&["--threads", "0"], &["--threads"]);

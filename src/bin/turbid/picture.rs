@@ -297,8 +297,8 @@ pub struct Readout {
     /// March on places that are not random: no noise, but bands.
     #[arg(long)]
     no_jitter: bool,
-    /// Steps share a gather of the volume map, at one of their places, within this many radii of the last one; 0 for a gather at each step.
-    /// Without effect with --no-jitter and the other step rules [default: 2].
+    /// Random steps share a gather of the volume map, at one of their places, within this many radii of the last one; 0 for a gather at
+    /// each step [default: 2; 0 with --no-jitter and the other step rules].
     #[arg(long)]
     spacing: Option<f64>,
     /// What volume estimates do where a medium ends or a body stands in it: without it there are no photons, behind it
@@ -531,6 +531,16 @@ impl Readout {
         if let Some(spacing) = self.spacing {
             if !(spacing >= 0.0 && spacing.is_finite()) {
                 return Err(anyhow!("--spacing is {spacing}; allowed: finite and at least 0"));
+            }
+            if spacing > 0.0 && (self.no_jitter || settings.march.rule != StepRule::Integrated) {
+                return Err(anyhow!(
+                    "--spacing is about random steps; allowed: without --no-jitter, by --step-rule integrated"
+                ));
+            }
+            if spacing > 0.0 && settings.volume.reads_rays() {
+                return Err(anyhow!(
+                    "--spacing is about steps; allowed: without --ray-radius and --beam-radius"
+                ));
             }
             settings.spacing = spacing;
         }
