@@ -200,13 +200,12 @@ impl Readout {
             if !(spacing >= 0.0 && spacing.is_finite()) {
                 return Err(anyhow!("spacing is {spacing}; allowed: finite and at least 0"));
             }
-            let is_shared = settings.march.is_jittered && settings.march.rule == StepRule::Integrated;
-            if spacing > 0.0 && (!is_shared || settings.volume.reads_rays()) {
+            settings.spacing = spacing;
+            if spacing > 0.0 && !settings.shares_gathers() {
                 return Err(anyhow!(
                     "spacing is about random steps; allowed: with jitter, step_rule \"integrated\", and neither ray_radius nor beam_radius"
                 ));
             }
-            settings.spacing = spacing;
         }
         Ok(settings)
     }

@@ -141,8 +141,7 @@ fn rays_through_the_lamp_itself() {
 }
 
 /// Rays across a spot's cone, along it, near its edge, towards the lamp and away from it, cones from a quarter of a degree to
-/// wider than a half space: light scattered once is the integral over all of the ray, and intervals are as narrow as those of a
-/// lamp that shines everywhere, since no distance is chosen in the dark.
+/// wider than a half space: light scattered once is the integral over all of the ray.
 #[test]
 fn rays_across_the_cone_of_a_spot() {
     let (sigma_t, albedo) = (0.7, 0.9);

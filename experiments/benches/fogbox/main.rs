@@ -6,8 +6,8 @@
 //!
 //! Efficiency is 1/(mean squared error x processor seconds), over pixels and channels. Of path tracers the error is the
 //! spread of independent rounds; that their means are right is tested beside it, on the mean radiance of the picture,
-//! against converged values of an independent renderer, outside of the box against the first row. Of the photon mapper (`-- maps`) it is the error against the mean
-//! of all path-traced rounds, split into the spread between maps and the rest, its bias. `-- lines` reads the volume map in
+//! against converged values of an independent renderer, outside of the box against the first row. Of the photon mapper
+//! (`-- maps`) it is the error against the mean of all path-traced rounds, split into the spread between maps and the rest, its bias. `-- lines` reads the volume map in
 //! balls along each ray, about it and by beams.
 //!
 //! The peer renders the same scene if there is a Python that knows it: `python3 -m venv VENV &&

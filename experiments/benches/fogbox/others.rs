@@ -58,11 +58,8 @@ fn parts_of(scene: &Scene) -> SceneParts {
 fn with_density(scene: &Scene, grid: Grid) -> Result<Scene> {
     let mut parts = parts_of(scene);
     let Region { shape, medium } = parts.regions.remove(0);
-    let matter = match &medium {
-        Medium::Homogeneous(matter) => matter.clone(),
-        Medium::Heterogeneous(varying) => varying.matter().clone(),
-    };
-    let medium = Medium::Heterogeneous(Heterogeneous::new(matter, Density::grid(grid)?).into());
+    let varying = Heterogeneous::new(medium.matter().clone(), Density::grid(grid)?);
+    let medium = Medium::Heterogeneous(varying.into());
     parts.regions.push(Region { shape, medium });
     Ok(Scene::new(parts)?)
 }

@@ -58,7 +58,7 @@ pub fn mapper_settings(settings: &Settings) -> Value {
             StepRule::Integrated => "integrated",
         },
         "jitter": is_jittered,
-        "spacing": spacing,
+        "spacing": if settings.shares_gathers() { *spacing } else { 0.0 },
         "adapt": adaptive.map_or(0.0, |adaptive| adaptive.tolerance),
         "shortest_step": adaptive.map(|adaptive| adaptive.shortest.get()),
     })
