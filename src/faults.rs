@@ -54,6 +54,8 @@ pub enum Fault {
     StepForgotten,
     /// A gather that steps of a march share counts for one of them.
     SharedForOne,
+    /// Directions that were drawn from what photons told are weighted as though they were not.
+    LobeForgotten,
     /// A path's radiance is not scaled where it is refracted.
     RadianceUnscaled,
     /// A photon's power is scaled like radiance where it is refracted.
@@ -144,7 +146,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 66] = [
+    pub const ALL: [Fault; 67] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -168,6 +170,7 @@ impl Fault {
         Fault::RejectedSetRadius,
         Fault::StepForgotten,
         Fault::SharedForOne,
+        Fault::LobeForgotten,
         Fault::RadianceUnscaled,
         Fault::PhotonPowerScaled,
         Fault::FresnelForgotten,

@@ -39,6 +39,8 @@ pub enum Purpose {
     Planes,
     /// What photons' beams carry through media that vary, beside their walk.
     Beams,
+    /// Photon histories that say where light comes from.
+    Directions,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

@@ -3,6 +3,7 @@
 use crate::arrays::doubles;
 use crate::choices::{beam_blur, beam_length, chosen, kernel, ray_ends, treatment};
 use crate::error::refuse;
+use crate::render::learn;
 use crate::scene::Given;
 use crate::work::{self, Watch};
 use anyhow::{Context, anyhow};
@@ -12,15 +13,16 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
+use turbid::integrators::Guides;
 use turbid::math::Positive;
 use turbid::memory;
 use turbid::photons::Ledger;
 use turbid::scene::{Binned, Orders, Scene, Space};
 use turbid::sensor::{
-    Measurement, PathSettings, PhotonSettings, TallySettings, by_bidirectional_paths, by_guided_paths,
-    by_paths, by_photons_in_passes, by_tallies, forecast, row_bytes, tally_bytes,
+    Measurement, PathSettings, PhotonSettings, Streams, TallySettings, by_bidirectional_paths,
+    by_guided_paths, by_photons_in_passes, by_tallies, check_paths, forecast, row_bytes, tally_bytes,
 };
-use turbid::transport::Progress;
+use turbid::transport::{Guide, Progress};
 
 /// Who measures.
 #[derive(Clone, Copy, PartialEq)]
@@ -55,6 +57,7 @@ struct Options {
     boundary: String,
     orders: (u32, Option<u32>),
     weight_windows: bool,
+    guide: Option<u64>,
     seed: u64,
     threads: Option<u16>,
 }
@@ -93,17 +96,20 @@ impl Request {
     }
 
     fn by_paths(&self, scene: &Scene, watch: &Watch) -> anyhow::Result<Readings> {
-        let Options { samples, seed, weight_windows, .. } = self.options;
+        let Options { samples, seed, weight_windows, guide, .. } = self.options;
         let settings = PathSettings { samples, seed, replicate: 0, orders: self.orders() };
         let bins = bins(scene);
         memory::check(|| format!("{bins} bins"), row_bytes(scene))?;
+        check_paths(scene)?;
+        let windows = weight_windows.then(|| Guide::new(scene)).transpose()?;
+        let directions = learn(scene, guide, Streams { seed, replicate: 0 }, watch)?;
+        let guides = Guides { windows: windows.as_ref(), directions: directions.as_ref() };
         watch.stage("paths", samples.saturating_mul(bins));
-        let read = match self.with {
-            With::Bidirectional => by_bidirectional_paths,
-            _ if weight_windows => by_guided_paths,
-            _ => by_paths,
+        let measurements = match self.with {
+            With::Bidirectional => by_bidirectional_paths(scene, &settings, watch)?,
+            _ => by_guided_paths(scene, &settings, guides, watch)?,
         };
-        Ok(Readings { measurements: read(scene, &settings, watch)?, ledger: None, estimates: None })
+        Ok(Readings { measurements, ledger: None, estimates: None })
     }
 
     fn by_light(&self, scene: &Scene, watch: &Watch) -> anyhow::Result<Readings> {
@@ -313,6 +319,9 @@ pub fn measure<'py>(
     }
     if options.weight_windows && with != With::Paths {
         return Err(refuse("weight_windows splits paths; allowed: with_ = 'paths'"));
+    }
+    if options.weight_windows && options.guide.is_some() {
+        return Err(refuse("weight_windows and guide both lead paths; allowed: one of them"));
     }
     let (kernel, treatment) = (kernel("kernel", &options.kernel)?, treatment(&options.boundary)?);
     let (blur, length) = (beam_blur(&options.beam_blur)?, beam_length(&options.beam_length)?);

@@ -13,10 +13,10 @@ use turbid::Spectrum;
 use turbid::integrators::Layer;
 use turbid::integrators::mapper::Mapper;
 use turbid::memory;
-use turbid::photons::PhotonMap;
 use turbid::photons::beams::BeamMap;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{MapSettings, Maps, fill_counted_by_importance, forecast};
+use turbid::photons::{DirectionSettings, Directions, PhotonMap};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Pixel, Streams, check_camera};
 use turbid::transport::Progress;
@@ -41,6 +41,7 @@ struct Request {
     samples: u64,
     maps: u64,
     seed: u64,
+    guide: Option<u64>,
     readout: Readout,
 }
 
@@ -117,7 +118,10 @@ impl Request {
                 Ok::<Film, turbid::Error>(film)
             };
             let film = match self.with {
-                With::Paths => fill(&Method::Paths(scene))?,
+                With::Paths => {
+                    let directions = learn(scene, self.guide, streams, watch)?;
+                    fill(&Method::of_paths(scene, directions.as_ref()))?
+                }
                 With::Bidirectional => fill(&Method::Bidirectional(scene))?,
                 With::Light => fill(&Method::Light(scene))?,
                 With::Photons => {
@@ -141,6 +145,19 @@ impl Request {
     }
 }
 
+/// Where light comes from, by the photons of so many histories, if any are asked for.
+pub fn learn(
+    scene: &Scene,
+    histories: Option<u64>,
+    Streams { seed, replicate }: Streams,
+    watch: &Watch,
+) -> turbid::Result<Option<Directions>> {
+    let Some(histories) = histories else { return Ok(None) };
+    watch.stage("directions", histories);
+    let settings = DirectionSettings { histories, seed, replicate, share: None };
+    Directions::learn(scene, &settings, watch).map(Some)
+}
+
 /// Three channels a pixel, row by row from the top.
 fn image<'py>(
     py: Python<'py>,
@@ -154,7 +171,7 @@ fn image<'py>(
 
 /// Makes a picture: radiance, its layers, the variances of both, photons of a sample.
 #[pyfunction]
-#[pyo3(signature = (scene, parameters, folder, with, width, height, samples, maps, seed, threads, readout, progress))]
+#[pyo3(signature = (scene, parameters, folder, with, width, height, samples, maps, seed, guide, threads, readout, progress))]
 #[allow(clippy::too_many_arguments, reason = "called from one place, by name")]
 pub fn render<'py>(
     py: Python<'py>,
@@ -167,6 +184,7 @@ pub fn render<'py>(
     samples: u64,
     maps: u64,
     seed: u64,
+    guide: Option<u64>,
     threads: Option<u16>,
     readout: &Bound<'py, PyDict>,
     progress: Option<Py<PyAny>>,
@@ -182,7 +200,7 @@ pub fn render<'py>(
     let readout = readout.extract::<Options>()?.understood()?;
     let given = Given::read(scene, parameters, folder)?;
     let scene = given.scene()?;
-    let request = Request { with, width, height, samples, maps, seed, readout };
+    let request = Request { with, width, height, samples, maps, seed, guide, readout };
     let film = work::run(py, threads, progress.as_ref(), move |watch| {
         let make = || {
             let camera = request.camera(&scene)?;

@@ -172,6 +172,9 @@ def test_wrong_settings():
     assert told(with_="photons", passes=2).startswith("slab: the k nearest photons of a map cannot be found in passes")
     assert told(with_="photons", photons=3).endswith("at least one for each of the 16 maps")
     assert told(with_="photons", weight_windows=True).startswith("weight_windows splits paths")
+    assert told(with_="photons", guide=1e4) == "guide says nothing to with_ = 'photons'; allowed: with paths or path"
+    assert told(guide=1e4, weight_windows=True) == "weight_windows and guide both lead paths; allowed: one of them"
+    assert told(guide=0).startswith("guide is 0; allowed: ") and "10000000" in told(guide=1e8)
     assert told(with_="light").startswith("slab: sensor depth 0.2: light tracing measures means over bins")
     for bomb in (dict(with_="photons", photons=1e14), dict(with_="photons", photons=9e15, radius=1e-3)):
         assert "of memory; allowed: what is free" in told(**bomb)

@@ -16,6 +16,7 @@ LAYERS = ["emission", "direct", "caustic", "indirect", "single", "multiple"]
         (["--with", "bidirectional", "--samples", 3], dict(with_="bidirectional", samples=3)),
         (["--with", "light", "--samples", 20, "--maps", 2], dict(with_="light", samples=20, maps=2)),
         (["--samples", 2, "--gather-rays", 4, "--seed", 5], dict(samples=2, gather_rays=4, seed=5)),
+        (["--with", "paths", "--guide", 3000, "--samples", 3, "--maps", 2], dict(with_="paths", guide=3000, samples=3, maps=2)),
         (
             ["--samples", 1, "--gather-rays", 0, "--maps", 2, "--global", "30000", "--volume", "emit:1e5", "--importance"],
             dict(samples=1, gather_rays=0, maps=2, global_=30_000, volume="emit:1e5", importance=True),

@@ -83,12 +83,14 @@ _METHODS = {
     | dict.fromkeys(("photons",), ("photons", "light"))
     | dict.fromkeys(
         "maps passes k radius max_radius ray_radius ray_k beam_radius beam_fluence beam_blur beam_length ray_ends planes progressive kernel boundary".split(), ("photons",)
-    ),
+    )
+    | {"guide": _PATHS},
     "render": dict.fromkeys(
         "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius ray_k beam_radius beam_blur kernel caustic_kernel "
         "gather_rays near step step_rule adapt spacing jitter boundary edges".split(),
         ("photons",),
-    ),
+    )
+    | {"guide": _PATHS},
 }
 """Arguments that are for some methods alone."""
 
@@ -215,6 +217,7 @@ def measure(
     boundary: str = "clipped",
     orders: Orders = None,
     weight_windows: bool = False,
+    guide: Optional[float] = None,
     seed: int = 1,
     threads: Optional[int] = None,
     progress: Progress = False,
@@ -250,6 +253,8 @@ def measure(
     boundary : what estimates do where a medium ends: none, clipped, reflection, local-linear
     orders : orders of scattering that count: 1, "0..3", (1, None)
     weight_windows : split paths on their way to the lights; only with paths
+    guide : path guiding: send out this many photons, such as 2e5, and lead paths to where they came from: for caustics, and light that
+        comes by way of mirrors or few bright places; only with paths, not with weight_windows, unbiased whatever the photons say
     seed : the same seed gives the same numbers, on any number of threads
     threads : all cores if none are given
     progress : True for a line on stderr, or a function of stage and part done
@@ -286,6 +291,7 @@ def measure(
         boundary=boundary,
         orders=_orders(orders),
         weight_windows=bool(weight_windows),
+        guide=_optional_count("guide", guide, 1, 10**7),
         seed=_seed(seed),
         threads=_threads(threads),
     )
@@ -331,6 +337,7 @@ def render(
     height: Optional[int] = None,
     samples: float = 16,
     maps: int = 1,
+    guide: Optional[float] = None,
     global_: Union[float, str] = 200_000,
     caustic: Union[float, str] = 50_000,
     volume: Union[float, str] = 65_000,
@@ -370,6 +377,7 @@ def render(
     width, height : pixels; the other follows if one is given
     samples : samples a pixel of each repetition; by light tracing histories a pixel
     maps : independent repetitions, with maps of their own if by photons; the picture is their mean
+    guide : as in :func:`measure`
     global_, caustic, volume : photons of the maps: a number to store, or "emit:1e6" to send out
     importance : let importance lead photons to where the camera reads them
     k, caustic_k, volume_k : photons that an estimate takes; what balances noise and blur, 100 to 1000
@@ -422,6 +430,7 @@ def render(
         _count("samples", samples),
         _count("maps", maps),
         _seed(seed),
+        _optional_count("guide", guide, 1, 10**7),
         _threads(threads),
         readout,
         told(progress),

@@ -35,6 +35,7 @@ def render(
     samples: int,
     maps: int,
     seed: int,
+    guide: Optional[int],
     threads: Optional[int],
     readout: dict[str, Any],
     progress: _Progress,

@@ -11,4 +11,4 @@ pub mod path;
 pub use layers::{Layer, Layers};
 pub use light_tracing::{Splat, light_tracing};
 pub use march::{Adaptive, March, StepRule, along};
-pub use path::{Rays, direct_flux, fluence, radiance};
+pub use path::{Guides, Rays, direct_flux, fluence, radiance};

@@ -18,11 +18,12 @@ use crate::light::{Light, LightSample};
 use crate::math::{FOUR_PI, Interval, Ray, cosine_pair, warp};
 use crate::medium::Medium;
 use crate::phase::PhaseFunction;
+use crate::photons::Directions;
 use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, Distances, Flags, Guide, Guided, Roulette, Step, Visitor, Walker, collected, connection,
+    Arrival, Distances, Flags, Guide, Guided, Lobe, Roulette, Step, Visitor, Walker, collected, connection,
     emission, span, transmittance, walk,
 };
 use glam::DVec3;
@@ -48,6 +49,17 @@ impl Rays {
     }
 }
 
+/// What is known of where light is, for paths to be led there, by one of these: each ends what it does not lead. Every mean stays, whatever is
+/// known.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Guides<'a> {
+    /// Weight windows, which split paths on their way to the lights and end them elsewhere: where light is found through many mean
+    /// free paths.
+    pub windows: Option<&'a Guide>,
+    /// Where photons came from: where light is found by connections from few places only, behind glass and by way of mirrors.
+    pub directions: Option<&'a Directions>,
+}
+
 /// What reaches a path's origin, split by the caller: called with the order, the class and the contribution.
 pub(super) struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     scene: &'a Scene,
@@ -62,6 +74,8 @@ pub(super) struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     end: f64,
     /// The games by which it is split and ended.
     guided: Option<Guided<'a>>,
+    /// Where light comes from.
+    directions: Option<&'a Directions>,
     /// Orders above which light is left out of lights that do not fill space, if it is: of those that rays meet, and of delta lights.
     joined_above: Option<[u32; 2]>,
 }
@@ -77,6 +91,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             specular_at: None,
             end: f64::INFINITY,
             guided: None,
+            directions: None,
             joined_above: None,
         }
     }
@@ -281,6 +296,16 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
         self.guided
     }
 
+    #[inline(always)]
+    fn lobe_in_medium(&self, position: DVec3) -> Option<&Lobe> {
+        self.directions?.in_medium(position)
+    }
+
+    #[inline(always)]
+    fn lobe_on_surface(&self, position: DVec3, normal: DVec3) -> Option<&Lobe> {
+        self.directions?.on_surface(position, normal)
+    }
+
     /// Classes of paths that are split are not told apart: only what they bring in all is asked for.
     fn resume(&mut self, hit: Option<&SceneHit>) {
         self.end = hit.map_or(f64::INFINITY, |h| h.hit.t);
@@ -298,10 +323,11 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                 let medium = self.scene.medium(number);
                 let before = walker.ray.dir;
                 let albedo = medium.albedo(position);
+                let lobe = self.directions.and_then(|directions| directions.in_medium(position));
                 let scattered = |towards: DVec3| {
                     let (one_minus_mu, one_plus_mu) = cosine_pair(before, towards);
                     let p = medium.phase().eval(one_minus_mu, one_plus_mu);
-                    (albedo * p, p)
+                    (albedo * p, lobe.map_or(p, |lobe| lobe.mixed(towards, p)))
                 };
                 let scene = self.scene;
                 let end = if planted(Fault::WallForgotten) { f64::INFINITY } else { self.end };
@@ -328,10 +354,13 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                 let Surface::Lambertian(surface) = &self.scene.objects()[index].surface else { return };
                 let normals = found.hit.normals(walker.ray.dir);
                 let fraction = surface.eval(position, found.hit.uv);
+                let lobe =
+                    self.directions.and_then(|learned| learned.on_surface(position, normals.geometric));
                 let scattered = |towards: DVec3| {
                     let cosine = normals.cosine(towards);
                     let again = if planted(Fault::CosineTwice) { cosine } else { 1.0 };
-                    (fraction * cosine * again, warp::pdf_cosine_hemisphere(cosine))
+                    let pdf = warp::pdf_cosine_hemisphere(cosine);
+                    (fraction * cosine * again, lobe.map_or(pdf, |lobe| lobe.mixed(towards, pdf)))
                 };
                 self.connect(
                     (walker, Flags::DIFFUSE),
@@ -495,21 +524,23 @@ pub fn classes(
 ) -> Rays {
     let visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
     let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
-    follow(visitor, start, None, stream)
+    follow(visitor, start, Guides::default(), stream)
 }
 
-/// Follows a path, and all that is split off it if there is a guide. Returns the work.
+/// Follows a path, and all that is split off it. Returns the work.
 fn follow<'a, F: FnMut(u32, Layer, Spectrum)>(
     mut visitor: PathVisitor<'a, F>,
     start: Walker,
-    guide: Option<&'a Guide>,
+    guides: Guides<'a>,
     stream: &mut Stream,
 ) -> Rays {
     let (scene, limit) = (visitor.scene, visitor.orders.max);
     // Roulette compares with the weight that a walk started with; windows take its place.
-    let roulette = Roulette::Below(if guide.is_some() { 0.0 } else { ROULETTE * start.weight.max() });
+    let roulette =
+        Roulette::Below(if guides.windows.is_some() { 0.0 } else { ROULETTE * start.weight.max() });
     let place = (start.ray.origin, start.interior);
-    visitor.guided = guide.map(|guide| Guided::new(guide, scene, place, start.weight));
+    visitor.guided = guides.windows.map(|guide| Guided::new(guide, scene, place, start.weight));
+    visitor.directions = guides.directions;
     walk(scene, start, roulette, limit, stream, &mut visitor);
     visitor.rays
 }
@@ -529,44 +560,56 @@ pub fn layers(
     (layers, rays)
 }
 
-/// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order: `collect` is
-/// called with the order and the contribution. The ray starts in the interior of number `within`; paths are split and ended by the guide, if
-/// there is one. Returns the work.
-pub fn radiance(
+/// One sample of the radiance that arrives at the origin of `ray`, which starts on no surface, from ahead [W/(L^2 sr)], by order and
+/// class, by guided paths. Returns the work.
+pub fn guided_classes(
     scene: &Scene,
     (ray, interior): (Ray, usize),
     orders: Orders,
-    guide: Option<&Guide>,
+    guides: Guides<'_>,
+    stream: &mut Stream,
+    collect: impl FnMut(u32, Layer, Spectrum),
+) -> Rays {
+    let visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
+    let start = Walker { interior, ..Walker::new(ray, Spectrum::ONE) };
+    follow(visitor, start, guides, stream)
+}
+
+/// The same by order.
+pub fn radiance(
+    scene: &Scene,
+    from: (Ray, usize),
+    orders: Orders,
+    guides: Guides<'_>,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    let visitor = PathVisitor::new(scene, orders, Rays::default(), |order, _, value| collect(order, value));
-    let start = Walker { interior, ..Walker::new(ray, Spectrum::ONE) };
-    follow(visitor, start, guide, stream)
+    guided_classes(scene, from, orders, guides, stream, |order, _, value| collect(order, value))
 }
 
-/// One sample of the fluence at a point [W/L^2], by order; paths are split and ended by the guide, if there is one.
+/// One sample of the fluence at a point [W/L^2], by order.
 ///
 /// Uncollided light from lights that can be aimed at comes by next-event estimation, in multiple importance with
-/// the uniform direction that everything else comes by. Returns the work.
+/// the direction that everything else comes by: a uniform one, or one that was learned. Returns the work.
 pub fn fluence(
     scene: &Scene,
     position: DVec3,
     orders: Orders,
-    guide: Option<&Guide>,
+    guides: Guides<'_>,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    let rays = aimed_fluence(scene, position, orders, stream, &mut collect);
-    let start = anywhere(scene, position, stream);
+    let lobe = guides.directions.and_then(|directions| directions.in_medium(position));
+    let rays = aimed_fluence(scene, (position, lobe), orders, stream, &mut collect);
+    let start = anywhere(scene, (position, lobe), stream);
     let visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
-    follow(visitor, start, guide, stream)
+    follow(visitor, start, guides, stream)
 }
 
 /// The part of the fluence at a point that directions are chosen for [W/L^2]. Returns the work.
 pub(super) fn aimed_fluence(
     scene: &Scene,
-    position: DVec3,
+    (position, lobe): (DVec3, Option<&Lobe>),
     orders: Orders,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
@@ -575,28 +618,41 @@ pub(super) fn aimed_fluence(
     if !orders.contains(0) {
         return rays;
     }
+    let pdf_met = |dir: DVec3| lobe.map_or(warp::pdf_sphere(), |lobe| lobe.mixed(dir, warp::pdf_sphere()));
     let interior = scene.interior_at(position);
     for index in 0..scene.lights().len() {
         if let Some((sample, received)) =
             next_event(scene, index, (position, None, interior), stream, &mut rays)
         {
-            let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
+            let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_met(sample.dir)));
             collect(0, received * share);
         }
     }
     if let Some((dir, pdf)) = emitters::sample(scene, position, stream) {
         let seen = emitted_along(scene, (Ray::new(position, dir), None, interior), stream, &mut rays);
-        collect(0, seen / (pdf + warp::pdf_sphere()));
+        collect(0, seen / (pdf + pdf_met(dir)));
     }
     rays
 }
 
-/// A path from a point in a uniform direction, weighted for the fluence.
-pub(super) fn anywhere(scene: &Scene, position: DVec3, stream: &mut Stream) -> Walker {
-    let dir = warp::square_to_sphere(stream.pair()).normalize();
+/// A path from a point in a direction that is uniform, or was learned in part, weighted for the fluence.
+pub(super) fn anywhere(
+    scene: &Scene,
+    (position, lobe): (DVec3, Option<&Lobe>),
+    stream: &mut Stream,
+) -> Walker {
+    let uniform = |stream: &mut Stream| warp::square_to_sphere(stream.pair()).normalize();
+    let (dir, weight, pdf) = match lobe {
+        None => (uniform(stream), FOUR_PI, warp::pdf_sphere()),
+        Some(lobe) => {
+            let dir = lobe.sample(stream, uniform);
+            let pdf = lobe.mixed(dir, warp::pdf_sphere());
+            (dir, 1.0 / pdf, pdf)
+        }
+    };
     Walker {
         interior: scene.interior_at(position),
-        pdf_solid_angle: Some(warp::pdf_sphere()),
-        ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
+        pdf_solid_angle: Some(pdf),
+        ..Walker::new(Ray::new(position, dir), Spectrum::grey(weight))
     }
 }

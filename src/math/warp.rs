@@ -55,3 +55,40 @@ pub fn square_to_cone([u, v]: [f64; 2], one_minus_mu_max: f64) -> DVec3 {
 pub fn pdf_cone(one_minus_mu_max: f64) -> f64 {
     1.0 / (2.0 * PI * one_minus_mu_max)
 }
+
+/// The octahedron |x| + |y| + |z| = 1 unfolded onto the square [-1, 1]^2: the upper half in the middle, the faces of the lower one at
+/// the corners.
+///
+/// # Returns    where a direction is; one that is not of unit length counts as the one along it
+/// # Source     Praun and Hoppe 2003, "Spherical parametrization and remeshing"
+pub fn octahedral(dir: DVec3) -> DVec2 {
+    let p = dir / (dir.x.abs() + dir.y.abs() + dir.z.abs());
+    let folded = DVec2::new(p.x, p.y);
+    if p.z >= 0.0 { folded } else { unfolded(folded) }
+}
+
+/// The unit direction at a place of the square: the inverse of [`octahedral`].
+pub fn from_octahedral(place: DVec2) -> DVec3 {
+    let z = 1.0 - place.x.abs() - place.y.abs();
+    let folded = if z >= 0.0 { place } else { unfolded(place) };
+    folded.extend(z).normalize()
+}
+
+/// Area of the square over solid angle, about a unit direction [1/sr]: |p|^3 at the place p of the octahedron.
+///
+/// A face lies at 1/sqrt(3) from the middle, so that dA cos/|p|^2 = dA/(sqrt(3) |p|^3), and its area is sqrt(3) times that of its
+/// shadow, which is the square's.
+pub fn octahedral_density(dir: DVec3) -> f64 {
+    let p = 1.0 / (dir.x.abs() + dir.y.abs() + dir.z.abs());
+    p * p * p
+}
+
+/// The reflection of a place about the edge of the inner square that is next to it.
+fn unfolded(place: DVec2) -> DVec2 {
+    (DVec2::ONE - DVec2::new(place.y.abs(), place.x.abs())) * DVec2::new(sign(place.x), sign(place.y))
+}
+
+/// 1 or -1; 1 at both zeros.
+fn sign(x: f64) -> f64 {
+    if x >= 0.0 { 1.0 } else { -1.0 }
+}

@@ -31,6 +31,10 @@ pub struct RunInfo {
     pub orders: String,
     /// Paths a sensor or bin.
     pub samples: Option<u64>,
+    /// Whether weight windows split and end them.
+    pub weight_windows: Option<bool>,
+    /// Photons that said where light comes from, for paths to be led there.
+    pub guide: Option<u64>,
     /// Photons emitted, for all maps together.
     pub photons: Option<u64>,
     /// Independent maps.
@@ -105,11 +109,13 @@ struct Document<'a, T> {
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 
-const RUN_COLUMNS: [&str; 23] = [
+const RUN_COLUMNS: [&str; 25] = [
     "with",
     "seed",
     "orders",
     "samples",
+    "weight_windows",
+    "guide",
     "photons",
     "maps",
     "radius",

@@ -1,6 +1,7 @@
 //! Photons: the record, the pass that stores them, the periodic cell, the tree over their positions, maps, and files of them.
 
 pub mod beams;
+mod directions;
 mod emit;
 mod ends;
 pub mod file;
@@ -16,6 +17,7 @@ mod tallies;
 pub mod tree;
 
 pub use crate::transport::Flags;
+pub use directions::{DirectionSettings, Directions, MOST_HISTORIES};
 pub use emit::Emitter;
 pub(crate) use emit::from_light;
 pub use ends::{MOST_EVENTS, check_end};

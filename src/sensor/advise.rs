@@ -19,6 +19,7 @@ use crate::error::{Error, Result};
 use crate::estimators::boundary::Boundary;
 use crate::estimators::{Estimator, Gather, Kernel};
 use crate::faults::{Fault, planted};
+use crate::integrators::Guides;
 use crate::light::Light;
 use crate::photons::{Histories, Part};
 use crate::rng::{Purpose, Stream};
@@ -554,12 +555,13 @@ pub fn path_advice(
     target: f64,
     progress: &dyn Progress,
 ) -> Result<PathAdvice> {
-    paths::check(scene)?;
+    paths::check_paths(scene)?;
     let settings = PathSettings { samples, seed, replicate: 0, orders: Orders::ALL };
     let sensors = probes(scene);
     let (mut variance, mut is_heavy_tailed) = (0.0, false);
     for (index, sensor) in sensors.iter().enumerate() {
-        let (channels, tails) = paths::read(scene, sensor, index as u64, &settings, None, progress)?;
+        let (channels, tails) =
+            paths::read(scene, sensor, index as u64, &settings, Guides::default(), progress)?;
         let mean = channels.iter().map(Moments::mean).sum::<f64>() / 3.0;
         if mean == 0.0 {
             return Err(Error::Scene(format!("{samples} paths from {} found no light", sensor.name)));

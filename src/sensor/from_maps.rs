@@ -8,7 +8,7 @@ use crate::estimators::boundary::{Boundary, Treatment};
 use crate::estimators::{BeamBlur, Estimate, Estimator, OwnEnds, PlaneEstimator, RayEnds};
 use crate::geometry::Shape;
 use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
-use crate::integrators::{March, StepRule, along};
+use crate::integrators::{Guides, March, StepRule, along, path};
 use crate::math::{Interval, Positive, Ray};
 use crate::medium::Medium;
 use crate::photons::Ledger;
@@ -215,7 +215,7 @@ fn radiance(
     let (interior, size) = (scene.interior_at(ray.origin), scene_size(scene));
     if orders.contains(0) {
         let only_direct = Orders::only(0);
-        crate::integrators::radiance(scene, (*ray, interior), only_direct, None, stream, |_, value| {
+        path::radiance(scene, (*ray, interior), only_direct, Guides::default(), stream, |_, value| {
             sum += value
         });
     }

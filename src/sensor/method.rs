@@ -6,9 +6,10 @@ use super::light::{LightCount, extend_by_light};
 use super::render::{Streams, extend};
 use crate::error::Result;
 use crate::integrators::mapper::{Mapper, Report};
-use crate::integrators::path;
+use crate::integrators::{Guides, Layers, path};
+use crate::photons::Directions;
 use crate::rng::Stream;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Orders, Scene};
 use crate::transport::Progress;
 
 /// What makes pictures of a scene.
@@ -18,6 +19,8 @@ pub enum Method<'a> {
     Photons(Mapper<'a>),
     /// The unbiased path tracer.
     Paths(&'a Scene),
+    /// The unbiased path tracer, led to where photons came from.
+    Guided(&'a Scene, &'a Directions),
     /// The unbiased path tracer whose paths are connected to subpaths from the lights.
     Bidirectional(&'a Scene),
     /// The unbiased light tracer: what the camera sees straight or through filters of light that scatters last on a diffuse
@@ -25,7 +28,12 @@ pub enum Method<'a> {
     Light(&'a Scene),
 }
 
-impl Method<'_> {
+impl<'a> Method<'a> {
+    /// The path tracer, led by what photons told, if there is that.
+    pub fn of_paths(scene: &'a Scene, directions: Option<&'a Directions>) -> Self {
+        directions.map_or(Method::Paths(scene), |directions| Method::Guided(scene, directions))
+    }
+
     /// A picture with so many samples per pixel.
     ///
     /// # Errors
@@ -68,13 +76,9 @@ impl Method<'_> {
                     Sample { layers, photons: photons as f64 }
                 })
             }
-            Method::Paths(scene) => {
-                let interior = scene.interior_at(camera.position());
-                extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
-                    let (layers, rays) = path::layers(scene, ray, None, interior, stream);
-                    *work += Report { rays, work: stream.work, ..Report::default() };
-                    layers
-                })
+            Method::Paths(scene) => by_paths(film, scene, None, camera, samples, streams, progress),
+            Method::Guided(scene, directions) => {
+                by_paths(film, scene, Some(directions), camera, samples, streams, progress)
             }
             Method::Bidirectional(scene) => {
                 extend_bidirectionally(film, scene, camera, samples, streams, progress)
@@ -86,4 +90,25 @@ impl Method<'_> {
             }
         }
     }
+}
+
+/// By paths, guided or not.
+fn by_paths(
+    film: &mut Film,
+    scene: &Scene,
+    directions: Option<&Directions>,
+    camera: &Camera,
+    samples: u64,
+    streams: Streams,
+    progress: &dyn Progress,
+) -> Result<Report> {
+    let interior = scene.interior_at(camera.position());
+    let guides = Guides { windows: None, directions };
+    extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
+        let mut layers = Layers::ZERO;
+        let collect = |_, layer, value| layers[layer] += value;
+        let rays = path::guided_classes(scene, (ray, interior), Orders::ALL, guides, stream, collect);
+        *work += Report { rays, work: stream.work, ..Report::default() };
+        layers
+    })
 }

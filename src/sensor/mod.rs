@@ -30,8 +30,8 @@ pub use maps::{MapReading, MapSettings, SensorMaps, usual_reach};
 pub use method::Method;
 pub use order_maps::{FluenceMaps, RadianceMaps};
 pub use paths::{
-    PathSettings, by_bidirectional_paths, by_guided_paths, by_paths, sample, sample_bin, sample_counted,
-    sample_guided,
+    PathSettings, by_bidirectional_paths, by_guided_paths, by_paths, check_paths, sample, sample_bin,
+    sample_counted, sample_guided,
 };
 pub use photons::{
     PhotonForecast, PhotonSettings, by_given_photons, by_photons, by_photons_in_passes, forecast,

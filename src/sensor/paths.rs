@@ -3,14 +3,14 @@
 use super::{Measurement, Source, measurements, room};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::integrators::{Rays, bidirectional, direct_flux, fluence, radiance};
+use crate::integrators::{Guides, Rays, bidirectional, direct_flux, fluence, radiance};
 use crate::light::PeriodicCell;
 use crate::math::{Frame, Ray, warp};
 use crate::photons::check_end;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Crossing, Orders, Quantity, Scene, Sensor};
 use crate::stats::{Moments, Tail};
-use crate::transport::{Guide, Progress, run_blocks};
+use crate::transport::{Progress, run_blocks};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -33,7 +33,7 @@ pub struct PathSettings {
 /// `Error::Unreachable` if the scene has path classes that paths cannot sample; `Error::NonFinite`;
 /// `Error::Cancelled`.
 pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Measurement>> {
-    measured(scene, settings, Walk::Paths(None), progress)
+    by_guided_paths(scene, settings, Guides::default(), progress)
 }
 
 /// The same by paths that are connected to subpaths from the lights.
@@ -49,27 +49,24 @@ pub fn by_bidirectional_paths(
     measured(scene, settings, Walk::Bidirectional, progress)
 }
 
-/// The same by paths that weight windows split on their way to the lights, and end elsewhere: where light is found through many mean
-/// free paths. A path takes longer, and varies less.
+/// The same by paths that are guided.
 ///
 /// # Errors
-/// those of [`by_paths`]; `Error::Scene` if a light is in no place and no direction
+/// those of [`by_paths`]
 pub fn by_guided_paths(
     scene: &Scene,
     settings: &PathSettings,
+    guides: Guides<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<Measurement>> {
-    let guide = Guide::new(scene).ok_or_else(|| {
-        Error::Scene("weight windows need lights in a place or from a direction: isotropic light into a body, and sources in a slab without end, are on all sides".into())
-    })?;
-    measured(scene, settings, Walk::Paths(Some(&guide)), progress)
+    measured(scene, settings, Walk::Paths(guides), progress)
 }
 
 /// How the light that a sensor reads is found.
 #[derive(Clone, Copy)]
 enum Walk<'a> {
-    /// By paths, split and ended by a guide, if there is one.
-    Paths(Option<&'a Guide>),
+    /// By paths, guided or not.
+    Paths(Guides<'a>),
     /// By paths that are connected to subpaths from the lights.
     Bidirectional,
 }
@@ -86,7 +83,7 @@ impl Walk<'_> {
     ) -> Rays {
         let interior = scene.interior_at(ray.origin);
         match self {
-            Walk::Paths(guide) => radiance(scene, (ray, interior), orders, guide, stream, collect),
+            Walk::Paths(guides) => radiance(scene, (ray, interior), orders, guides, stream, collect),
             Walk::Bidirectional => {
                 bidirectional::classes(scene, ray, None, interior, orders, stream, |order, _, value| {
                     collect(order, value)
@@ -105,7 +102,7 @@ impl Walk<'_> {
         collect: impl FnMut(u32, Spectrum),
     ) -> Rays {
         match self {
-            Walk::Paths(guide) => fluence(scene, position, orders, guide, stream, collect),
+            Walk::Paths(guides) => fluence(scene, position, orders, guides, stream, collect),
             Walk::Bidirectional => bidirectional::fluence(scene, position, orders, stream, collect),
         }
     }
@@ -117,7 +114,7 @@ fn measured(
     by: Walk,
     progress: &dyn Progress,
 ) -> Result<Vec<Measurement>> {
-    check(scene)?;
+    check_paths(scene)?;
     let (mut all, mut index) = (room(scene), 0);
     for sensor in scene.sensors() {
         for bin in 0..sensor.binned().map_or(1, Binned::bins) {
@@ -140,7 +137,10 @@ fn measured(
 }
 
 /// Whether paths can sample all that the scene's light does, and come to an end.
-pub(super) fn check(scene: &Scene) -> Result<()> {
+///
+/// # Errors
+/// `Error::Unreachable` if not; those of [`check_end`]
+pub fn check_paths(scene: &Scene) -> Result<()> {
     let fills =
         |s: &&Sensor| matches!(s.quantity, Quantity::Absorbed(number) if number >= scene.regions().len());
     if let Some(sensor) = scene.sensors().iter().find(fills) {
@@ -164,12 +164,12 @@ pub(super) fn read(
     sensor: &Sensor,
     index: u64,
     settings: &PathSettings,
-    guide: Option<&Guide>,
+    guides: Guides<'_>,
     progress: &dyn Progress,
 ) -> Result<([Moments; 3], [Tail; 3])> {
     let orders = sensor.orders.and(&settings.orders);
     moments_of(index, settings, progress, |stream| {
-        sample_guided(scene, &sensor.quantity, orders, guide, stream).0
+        sample_guided(scene, &sensor.quantity, orders, guides, stream).0
     })
 }
 
@@ -222,18 +222,18 @@ pub fn sample_counted(
     orders: Orders,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
-    sample_guided(scene, quantity, orders, None, stream)
+    sample_guided(scene, quantity, orders, Guides::default(), stream)
 }
 
-/// The same by paths that are split and ended by a guide, if there is one.
+/// The same by paths that are guided.
 pub fn sample_guided(
     scene: &Scene,
     quantity: &Quantity,
     orders: Orders,
-    guide: Option<&Guide>,
+    guides: Guides<'_>,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
-    sample_by(scene, quantity, orders, Walk::Paths(guide), stream)
+    sample_by(scene, quantity, orders, Walk::Paths(guides), stream)
 }
 
 fn sample_by(
@@ -279,10 +279,9 @@ pub fn sample_bin(
     scene: &Scene,
     (binned, bin): (&Binned, usize),
     orders: Orders,
-    guide: Option<&Guide>,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
-    sample_bin_by(scene, (binned, bin), orders, Walk::Paths(guide), stream)
+    sample_bin_by(scene, (binned, bin), orders, Walk::Paths(Guides::default()), stream)
 }
 
 fn sample_bin_by(

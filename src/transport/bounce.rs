@@ -1,13 +1,13 @@
 //! What becomes of a walker at a body.
 
 use super::visitor::{Arrival, Step, Visitor, Walker};
-use super::{Flags, Roulette};
+use super::{Flags, Lobe, Roulette};
 use crate::faults::{Fault, planted};
 use crate::geometry::Normals;
-use crate::math::Ray;
+use crate::math::{Ray, warp};
 use crate::rng::Stream;
 use crate::scene::{Scene, SceneHit, Target};
-use crate::surface::{Dielectric, Filter, Surface, fresnel, refract};
+use crate::surface::{Dielectric, Filter, Lambertian, Surface, fresnel, refract};
 use glam::DVec3;
 
 /// Total reflections without a chance to leave after which light counts as caught: a cube of glass keeps some of the light
@@ -21,12 +21,23 @@ pub(super) fn is_looked_through(scene: &Scene, found: &SceneHit) -> bool {
         if matches!(scene.objects()[index].surface, Surface::Mirror(_) | Surface::Dielectric(_) | Surface::Filter(_)))
 }
 
-/// The walker after a body, or none if it ends there.
+/// What a weight is multiplied by where a direction was drawn from a lobe and its own surface or phase function together, and the
+/// density of that [1/sr]; no change without a lobe, and 0 where the surface or phase function sends nothing.
+#[inline(always)]
+pub(super) fn learned(lobe: Option<&Lobe>, dir: DVec3, own: impl FnOnce() -> f64) -> (f64, Option<f64>) {
+    let Some(lobe) = lobe else { return (1.0, None) };
+    let own = own();
+    let mixed = lobe.mixed(dir, own);
+    (if own > 0.0 { own / mixed } else { 0.0 }, Some(mixed))
+}
+
+/// The walker after a body, or none if it ends there. What changes its weight and is no loss changes the game too: the scale of
+/// radiance behind a boundary, which is given back on the way out, and the density of a direction that was learned.
 pub(super) fn bounce<V: Visitor>(
     scene: &Scene,
     walker: &Walker,
     found: &SceneHit,
-    roulette: Roulette,
+    roulette: &mut Roulette,
     stream: &mut Stream,
     visitor: &mut V,
 ) -> Option<Walker> {
@@ -39,7 +50,7 @@ pub(super) fn bounce<V: Visitor>(
     };
     let surface = &scene.objects()[index].surface;
     if let Surface::Filter(filter) = surface {
-        return pass(walker, found, filter, roulette, stream, visitor);
+        return pass(walker, found, filter, *roulette, stream, visitor);
     }
     if let Surface::Dielectric(dielectric) = surface
         && dielectric.is_matched()
@@ -60,12 +71,27 @@ pub(super) fn bounce<V: Visitor>(
         visitor.visit(&counted, Step::Surface(arrival, found), stream);
     }
     if let Surface::Dielectric(dielectric) = surface {
-        return cross(scene, (walker, position), found, dielectric, stream, visitor);
+        let next = cross(scene, (walker, position), found, dielectric, stream, visitor)?;
+        if next.interior != walker.interior {
+            *roulette = roulette.scaled(next.weight.max() / walker.weight.max());
+        }
+        return Some(next);
     }
     let about = if is_diffuse && !V::CARRIES_RADIANCE { normals.geometric } else { normals.shading };
     let reflectance = surface.reflectance(position, found.hit.uv) * factor;
     let survivor = roulette.survive(walker.weight, reflectance, stream);
-    let scattered = survivor.zip(surface.scatter(dir, about, stream.pair()));
+    let lobe = if is_diffuse { visitor.lobe_on_surface(position, normals.geometric) } else { None };
+    let scattered = match lobe {
+        None => survivor.zip(surface.scatter(dir, about, stream.pair())),
+        Some(lobe) => survivor.and_then(|weight| {
+            let after = lobe.sample(stream, |stream| Lambertian::scatter(about, stream.pair()).0);
+            let own = || warp::pdf_cosine_hemisphere(after.dot(about));
+            let (factor, mixed) = learned(Some(lobe), after, own);
+            *roulette = roulette.scaled(factor);
+            let weight = weight * factor;
+            (weight.max() >= f64::MIN_POSITIVE).then_some((weight, (after, mixed)))
+        }),
+    };
     let leaving = scattered.and_then(|(weight, (after, pdf))| match pdf {
         Some(_) => normals.leaves(after).then_some((weight, after, pdf)),
         None => Some((weight * specular::<V>(&normals, (dir, after), true)?, after, pdf)),

@@ -1,6 +1,7 @@
 //! A guess of how much light is where, by which paths are split and ended on their way to it.
 
 use crate::Spectrum;
+use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::geometry::Shape;
 use crate::light::Light;
@@ -55,8 +56,11 @@ enum Aim {
 }
 
 impl Guide {
-    /// The guess for a scene; none if one of its lights is in no place and no direction: its paths would be ended for others.
-    pub fn new(scene: &Scene) -> Option<Self> {
+    /// The guess for a scene.
+    ///
+    /// # Errors
+    /// `Error::Scene` if one of its lights is in no place and no direction: its paths would be ended for others
+    pub fn new(scene: &Scene) -> Result<Self> {
         let rate = |number: usize| {
             let medium = scene.medium(number);
             let (albedo, g) = (medium.matter().albedo().mean(), medium.phase().moment(1));
@@ -65,8 +69,11 @@ impl Guide {
         let rates: Vec<f64> = (0..scene.media().len()).map(rate).collect();
         let shortest = 1.0 / rates.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let aim = |light| Self::aim(scene, light, shortest);
-        let lights: Vec<(Aim, f64)> = scene.lights().iter().map(aim).collect::<Option<_>>()?;
-        Some(Guide { lights, rates })
+        let lights: Option<Vec<(Aim, f64)>> = scene.lights().iter().map(aim).collect();
+        let lights = lights.ok_or_else(|| {
+            Error::Scene("weight windows need lights in a place or from a direction: isotropic light into a body, and sources in a slab without end, are on all sides".into())
+        })?;
+        Ok(Guide { lights, rates })
     }
 
     /// Where a light is, and the fluence that it brings to a distance of 1, or to everywhere.

@@ -1,4 +1,4 @@
-//! Free flight, roulette, weight windows, the one random walk that paths and photons share, and blocks of histories.
+//! Free flight, roulette, weight windows, learned directions, the one random walk that paths and photons share, and blocks of histories.
 
 mod blocks;
 mod bounce;
@@ -7,6 +7,7 @@ mod equal_angles;
 mod flags;
 mod flight;
 mod guide;
+mod lobe;
 mod roulette;
 mod track;
 mod transmittance;
@@ -20,6 +21,7 @@ pub use flags::Flags;
 pub(crate) use flight::flight_by_stretch;
 pub use flight::{Flight, free_flight};
 pub use guide::{Guide, Guided, window};
+pub use lobe::Lobe;
 pub use roulette::Roulette;
 pub(crate) use track::steps;
 pub use transmittance::{Passage, connection, segment_transmittance, transmittance};

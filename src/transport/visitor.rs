@@ -1,6 +1,6 @@
 //! Who watches a walk, and what it is told.
 
-use super::{Flags, Guided};
+use super::{Flags, Guided, Lobe};
 use crate::Spectrum;
 use crate::math::Ray;
 use crate::rng::Stream;
@@ -91,6 +91,18 @@ pub trait Visitor {
     /// The games by which histories are split and ended on their way, beside roulette; none for most.
     #[inline(always)]
     fn guided(&self) -> Option<Guided<'_>> {
+        None
+    }
+
+    /// The directions that were learned about a place in a medium, to be mixed with those of its phase function; none for most.
+    #[inline(always)]
+    fn lobe_in_medium(&self, _position: DVec3) -> Option<&Lobe> {
+        None
+    }
+
+    /// The same on a diffuse surface with this geometric normal, on the side that the history is on.
+    #[inline(always)]
+    fn lobe_on_surface(&self, _position: DVec3, _normal: DVec3) -> Option<&Lobe> {
         None
     }
 

@@ -1,6 +1,6 @@
 //! The one random walk that paths and photons share.
 
-use super::bounce::{bounce, is_looked_through};
+use super::bounce::{bounce, is_looked_through, learned};
 use super::visitor::{Arrival, Step, Visitor, Walker};
 use super::{Flags, Flight, Roulette, free_flight, transmittance};
 use crate::Spectrum;
@@ -94,11 +94,8 @@ fn follow<V: Visitor>(
                 walker.weight * transmittance(scene, &walker.ray, through.hit.t, walker.interior, stream);
             visitor.visit(&walker, Step::Truncated(walker.weight - seen), stream);
             walker.weight = seen;
-            match bounce(scene, &walker, &through, roulette, stream, visitor) {
-                Some(next) => {
-                    roulette = refracted(roulette, &walker, &next);
-                    walker = next;
-                }
+            match bounce(scene, &walker, &through, &mut roulette, stream, visitor) {
+                Some(next) => walker = next,
                 None => return,
             }
             continue;
@@ -132,11 +129,23 @@ fn follow<V: Visitor>(
                     return;
                 };
                 let before = walker.ray.dir;
-                let dir = medium.phase().scatter(before, stream.pair());
+                let own = |stream: &mut Stream| medium.phase().scatter(before, stream.pair());
+                let lobe = visitor.lobe_in_medium(position);
+                let dir = match lobe {
+                    None => own(stream),
+                    Some(lobe) => lobe.sample(stream, own),
+                };
                 let pdf = || {
                     let (one_minus_mu, one_plus_mu) = crate::math::cosine_pair(before, dir);
                     medium.phase().eval(one_minus_mu, one_plus_mu)
                 };
+                let (factor, mixed) = learned(lobe, dir, pdf);
+                let kept = kept * factor;
+                if lobe.is_some() && kept.max() < f64::MIN_POSITIVE {
+                    visitor.visit(&walker, Step::Truncated(Spectrum::ZERO), stream);
+                    return;
+                }
+                roulette = roulette.scaled(factor);
                 walker = Walker {
                     ray: Ray::new(position, dir),
                     weight: kept,
@@ -147,7 +156,7 @@ fn follow<V: Visitor>(
                     sampled_at: position,
                     events: walker.events,
                     total_reflections: 0,
-                    pdf_solid_angle: V::LOOKS_AHEAD.then(pdf),
+                    pdf_solid_angle: V::LOOKS_AHEAD.then(|| mixed.unwrap_or_else(pdf)),
                 };
             }
             Flight::Uncollided(weight) => {
@@ -157,11 +166,8 @@ fn follow<V: Visitor>(
                     visitor.visit(&walker, Step::Escaped(weight), stream);
                     return;
                 };
-                match bounce(scene, &walker, &found, roulette, stream, visitor) {
-                    Some(next) => {
-                        roulette = refracted(roulette, &walker, &next);
-                        walker = next;
-                    }
+                match bounce(scene, &walker, &found, &mut roulette, stream, visitor) {
+                    Some(next) => walker = next,
                     None => return,
                 }
             }
@@ -225,12 +231,4 @@ fn fly<V: Visitor>(
             Flight::Uncollided(weight) => (walker.weight, flown) = (weight, stop),
         }
     }
-}
-
-/// The game behind a boundary: the scale of radiance is no loss, and what is refracted out again gets it back.
-fn refracted(roulette: Roulette, before: &Walker, after: &Walker) -> Roulette {
-    if after.interior == before.interior {
-        return roulette;
-    }
-    roulette.scaled(after.weight.max() / before.weight.max())
 }

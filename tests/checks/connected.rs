@@ -8,7 +8,7 @@ use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
-use turbid::integrators::{bidirectional, radiance};
+use turbid::integrators::{Guides, bidirectional, radiance};
 use turbid::math::Ray;
 use turbid::scene::{Interior, Object, Orders, Scene, SceneParts};
 
@@ -72,7 +72,7 @@ pub fn two_reflections_are_those_of_paths() {
     });
     let paths = numbers(1 << 16, 2, |stream| {
         let mut sum = 0.0;
-        radiance(&scene, (ray, 0), Orders::only(2), None, stream, |_, value| sum += value[0]);
+        radiance(&scene, (ray, 0), Orders::only(2), Guides::default(), stream, |_, value| sum += value[0]);
         sum
     });
     verdict::agree("two reflections", &connected, &paths, 0.1 * paths.mean(), 1);

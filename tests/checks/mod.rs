@@ -7,6 +7,7 @@ pub mod beams;
 pub mod cell;
 pub mod color;
 pub mod connected;
+pub mod directions;
 pub mod emitters;
 pub mod flights;
 pub mod fog;

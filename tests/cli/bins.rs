@@ -18,7 +18,7 @@ fn rows(arguments: &[&str]) -> Vec<csv::StringRecord> {
     let output = turbid(arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let mut reader = csv::Reader::from_reader(output.stdout.as_slice());
-    assert_eq!(reader.headers().unwrap().len(), 12 + 23);
+    assert_eq!(reader.headers().unwrap().len(), 12 + 25);
     reader.records().collect::<Result<_, _>>().unwrap()
 }
 
@@ -219,6 +219,33 @@ fn bins_where_light_from_outside_has_not_been() {
     let onto = ["measure", text(&file), "--with", "light", "--photons", "100", "--npy", text(&file)];
     refuses_naming(&onto, &["--npy names the scene's own file"]);
     assert_eq!(std::fs::read_to_string(&file).unwrap(), scene);
+}
+
+/// What is measured by guided paths says so, and is not what paths find; windows and guides are asked for one at a time.
+#[test]
+fn guided_measurements_say_so() {
+    let folder = Folder::new();
+    let scene = "interiors = [{ name = \"glass\", index = 1.5 }]\n\
+                 [[objects]]\nshape = { rectangle = { corner = [-1, -1, 1], u = [2, 0, 0], v = [0, 0, -2] } }\nsurface = { lambertian = { reflectance = 0.5 } }\n\
+                 [[objects]]\nshape = { cuboid = { min = [-1.5, -0.1, -1.5], max = [1.5, 0.1, 1.5] } }\nsurface = { dielectric = { inside = \"glass\" } }\n\
+                 [[lights]]\nsun = { dir = [0.2, -1, 0.3], irradiance = 1, angular_radius = 3 }\n\
+                 [[sensors]]\nname = \"table\"\nmeasure = { radiance = { origin = [0.6, -0.5, 0.5], dir = [-0.58, -0.5, -0.47] } }\n";
+    let file = folder.file("scene.toml", scene);
+    let arguments = ["measure", text(&file), "--with", "paths", "--samples", "20000", "--format", "csv"];
+    let paths = succeeds(&arguments);
+    let guided = succeeds(&[&arguments[..], &["--guide", "20000"]].concat());
+    let column = |table: &str, name: &str| -> String {
+        let mut lines = table.lines().map(|line| line.split(',').map(str::to_string).collect::<Vec<_>>());
+        let at = lines.next().unwrap().iter().position(|column| column == name).unwrap();
+        lines.next().unwrap()[at].clone()
+    };
+    assert_eq!((column(&paths, "guide"), column(&guided, "guide")), (String::new(), "20000".to_string()));
+    assert_ne!(column(&paths, "mean"), column(&guided, "mean"));
+    refuses_naming(
+        &[&arguments[..], &["--guide", "9", "--weight-windows"]].concat(),
+        &["--weight-windows", "--guide"],
+    );
+    refuses_naming(&[&arguments[..], &["--guide", "2e7"]].concat(), &["--guide", "from 1 to 10000000"]);
 }
 
 /// Weight windows would end paths to light that comes from all sides.

@@ -6,11 +6,13 @@ use std::process::{Command, Stdio};
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 /// What follows them as CSV: what the numbers were made with.
-const RUN: [&str; 23] = [
+const RUN: [&str; 25] = [
     "with",
     "seed",
     "orders",
     "samples",
+    "weight_windows",
+    "guide",
     "photons",
     "maps",
     "radius",

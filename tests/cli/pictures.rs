@@ -71,6 +71,43 @@ fn pictures_have_the_same_bits_on_any_number_of_threads() {
     assert!(said.contains(" to the camera"), "{said}");
 }
 
+/// Where photons know no better directions a guided picture is that of paths, bit by bit, and says so; provenance has the guide of a picture
+/// by paths. Other methods refuse it, but for a reference's sake.
+#[test]
+fn guided_pictures_are_those_of_paths_where_photons_know_no_better() {
+    let folder = Folder::new();
+    let scene = room(&folder, "room.toml", ("", ""));
+    let render = |name: &str, more: &[&str]| {
+        let path = folder.0.path().join(name);
+        let start = ["render", text(&scene), "-o", text(&path), "--samples", "2"];
+        let done = crate::turbid(&[&start[..], more].concat()).output().unwrap();
+        assert!(done.status.success());
+        let notes = String::from_utf8(done.stderr).unwrap();
+        (std::fs::read(path.with_extension("png")).unwrap(), std::fs::read(&path).unwrap(), notes)
+    };
+    let (paths, _, _) = render("paths.exr", &["--with", "paths"]);
+    let (guided, file, notes) = render("guided.exr", &["--with", "paths", "--guide", "3000"]);
+    assert!(paths == guided && notes.contains("--guide changes nothing"), "{notes}");
+    assert!(String::from_utf8_lossy(&file).contains("\"guide\":3000"), "no provenance");
+    let compared = ["--with", "light", "--samples", "9", "--guide", "3000"];
+    let path = folder.0.path().join("light.exr");
+    refuses_naming(
+        &[&["render", text(&scene), "-o", text(&path)][..], &compared].concat(),
+        &["--guide says nothing to --with light; allowed: with --with paths or --compare"],
+    );
+    let lamp = room(
+        &folder,
+        "lamp.toml",
+        (
+            "point = { position = [0.0, 1.5, 0.0], power = 10.0 }",
+            "area = { shape = { sphere = { center = [0.0, 1.5, 0.0], radius = 0.1 } }, radiance = 10 }",
+        ),
+    );
+    let compared = ["--compare", "paths", "--compare-samples", "2", "--guide", "3000"];
+    let said = succeeds(&[&["render", text(&lamp), "-o", text(&path)][..], &QUICK, &compared].concat());
+    assert!(said.contains("compared"), "{said}");
+}
+
 /// Sum of a channel over the picture and, of pixels taken for independent, its standard error.
 fn summed(file: &Path, channel: &str) -> (f64, f64) {
     use exr::prelude::{ReadChannels, ReadLayers, read};

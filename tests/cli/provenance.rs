@@ -16,7 +16,7 @@ fn tables_say_what_they_were_made_with() {
     let revision = revision.split(['(', ')']).nth(1);
     let of = |with: &str, more: serde_json::Value| {
         let mut run = serde_json::json!({
-            "with": with, "seed": 3, "orders": "0..", "samples": null, "photons": null, "maps": null, "radius": null, "k": null,
+            "with": with, "seed": 3, "orders": "0..", "samples": null, "weight_windows": null, "guide": null, "photons": null, "maps": null, "radius": null, "k": null,
             "max_radius": null, "ray_radius": null, "ray_k": null, "beam_radius": null, "beam_blur": null, "beam_length": null, "beam_fluence": null, "ray_ends": null, "planes": null, "progressive": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
             "revision": revision,
         });

@@ -1,9 +1,9 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    along_rays, beams, cell, color, connected, emitters, flights, fog, gathers, glass, ledger, light, media,
-    numbers, outputs, phase, planes, point_light, points, progressive, shading, slab, threads, walls,
-    weights,
+    along_rays, beams, cell, color, connected, directions, emitters, flights, fog, gathers, glass, ledger,
+    light, media, numbers, outputs, phase, planes, point_light, points, progressive, shading, slab, threads,
+    walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -154,6 +154,11 @@ const fn inside(fault: Fault) -> Row {
         Fault::SharedForOne => {
             ("a gather that steps share counts for one", "steps_that_share_a_gather_have_their_sum", |_| {
                 gathers::steps_that_share_a_gather_have_their_sum()
+            })
+        }
+        Fault::LobeForgotten => {
+            ("learned directions weighted as though they were not", "guided_paths_find_as_much", |_| {
+                directions::guided_paths_find_as_much()
             })
         }
         Fault::RadianceUnscaled => {
@@ -444,6 +449,7 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::TrackStretched),
     inside(Fault::WindowUnfair),
     inside(Fault::SharedForOne),
+    inside(Fault::LobeForgotten),
     inside(Fault::ClustersForgotten),
     inside(Fault::FreedomOfThree),
     inside(Fault::VarianceOfRed),

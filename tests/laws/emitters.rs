@@ -9,6 +9,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
+use turbid::integrators::{Guides, radiance};
 use turbid::light::{Light, MediumEmission, VolumeSource};
 use turbid::math::{FOUR_PI, Ray, exp, exp_m1, warp};
 use turbid::medium::{Cloud, CloudShape, Density, Heterogeneous, Homogeneous};
@@ -148,7 +149,7 @@ fn chance_alone_finds_the_same_light() {
     let scene = bounded(regions, vec![pane, (floor, lambertian(Spectrum::ONE))], vec![far]);
     let by_chance = |p: DVec3, dir: DVec3, s: &mut Stream| {
         let mut sum = Spectrum::ZERO;
-        turbid::integrators::radiance(&scene, (Ray::new(p, dir), 0), Orders::only(0), None, s, |_, value| {
+        radiance(&scene, (Ray::new(p, dir), 0), Orders::only(0), Guides::default(), s, |_, value| {
             sum += value
         });
         sum

@@ -54,6 +54,20 @@ proptest! {
         }
     }
 
+    /// The square is covered once, with the density that it is said to have, on both halves of the sphere.
+    #[test]
+    fn octahedra_unfold_onto_their_square(u in -0.98..0.98f64, v in -0.98..0.98f64) {
+        let place = glam::DVec2::new(u, v);
+        let dir = warp::from_octahedral(place);
+        prop_assert!((dir.length() - 1.0).abs() <= 4.0 * f64::EPSILON);
+        prop_assert!((warp::octahedral(dir) - place).length() < 1e-15, "{dir} of {place}");
+        // Folds: along the axes and the inner square's edges.
+        let fold = u.abs().min(v.abs()).min((1.0 - u.abs() - v.abs()).abs());
+        prop_assume!(fold > 1e-3);
+        let density = jacobian(|[u, v]| warp::from_octahedral(glam::DVec2::new(u, v)), [u, v]) * warp::octahedral_density(dir);
+        prop_assert!((density - 1.0).abs() < TOLERANCE, "{density} at {place}");
+    }
+
     #[test]
     fn frames_are_orthonormal_and_right_handed(z in -1.0..=1.0f64, azimuth in 0.0..6.3f64, near in 0.0..40.0f64) {
         let tilt = turbid::math::exp(-near);

@@ -78,9 +78,7 @@ pub fn scores(scene: &Scene, n: u64, seed: u64) -> Vec<Vec<[Moments; 3]>> {
 /// Paths: moments by channel of one bin of a sensor.
 pub fn bin_paths(scene: &Scene, sensor: &Sensor, bin: usize, n: u64, seed: u64) -> [Moments; 3] {
     let binned = sensor.binned().unwrap();
-    histories(n, seed, |stream| {
-        turbid::sensor::sample_bin(scene, (binned, bin), sensor.orders, None, stream).0
-    })
+    histories(n, seed, |stream| turbid::sensor::sample_bin(scene, (binned, bin), sensor.orders, stream).0)
 }
 
 /// Photon histories watched step by step: moments of numbers that a watcher made of each. One light; its power is 1

@@ -1,5 +1,5 @@
-//! Bidirectional paths against the path tracer, each class and order, by every kind of light and through every kind of body; against
-//! the exact ball with a light in its centre; and in a furnace.
+//! Bidirectional and guided paths against the path tracer, each class and order, by every kind of light and through every kind of body;
+//! against the exact ball with a light in its centre; and in a furnace.
 
 use crate::against_exact::sphere::{light_of, referee};
 use crate::against_exact::sphere_fields::scattered;
@@ -16,11 +16,12 @@ use crate::transport::light_tracing::{self, ball_of_glass, by_paths, by_photons,
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
-use turbid::integrators::{Layer, bidirectional, fluence, path};
+use turbid::integrators::{Guides, Layer, bidirectional, fluence, path};
 use turbid::light::{Beam, Faces, Light, Section, Spot, Sun, VolumeSource};
 use turbid::math::{Asymmetry, Ray};
 use turbid::medium::{Cloud, CloudShape, Density, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::Phase;
+use turbid::photons::{DirectionSettings, Directions};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Filter as PixelFilter, Interior, Object, Orders, Region, Scene, SceneParts};
 use turbid::sensor::{Film, Method, Streams};
@@ -58,7 +59,7 @@ fn batches(seed: u64, sample: &Sample) -> Vec<[Moments; 3]> {
     moments
 }
 
-/// The light that rays from one place bring, by both methods.
+/// The light that rays from one place bring, by all methods; guided ones take half of their directions from what photons say.
 ///
 /// # Arguments
 /// `least` numbers by class, order and channel that must be known well enough to be compared: to a sixteenth of their value
@@ -77,8 +78,22 @@ fn agree(what: &str, scene: &Scene, least: usize) {
         let ray = ray(stream);
         bidirectional::classes(scene, ray, None, interior, Orders::ALL, stream, add);
     });
+    same(&format!("connected, {what}"), &paths, &connected, least);
+    let settings = DirectionSettings { histories: 20_000, seed: 3, replicate: 0, share: Some(0.5) };
+    let directions = Directions::learn(scene, &settings, &NoProgress).unwrap();
+    assert!(directions.counts().iter().any(|[_, used]| *used > 4), "{what}: {:?}", directions.counts());
+    let guides = Guides { windows: None, directions: Some(&directions) };
+    let guided = batches(3, &|stream, add| {
+        let ray = ray(stream);
+        path::guided_classes(scene, (ray, interior), Orders::ALL, guides, stream, add);
+    });
+    same(&format!("guided, {what}"), &paths, &guided, least);
+}
+
+/// Means by class and order, where they are known well enough.
+fn same(what: &str, paths: &[[Moments; 3]], others: &[[Moments; 3]], least: usize) {
     let mut compared = 0;
-    for (cell, (a, b)) in paths.iter().zip(&connected).enumerate() {
+    for (cell, (a, b)) in paths.iter().zip(others).enumerate() {
         let (layer, order) = (Layer::ALL[cell / ORDERS], cell % ORDERS);
         for channel in 0..3 {
             let (a, b) = (&a[channel], &b[channel]);
@@ -267,7 +282,7 @@ fn orders_are_a_part_of_all() {
         });
         let paths = numbers(1 << 16, 4, |stream| {
             let mut sum = 0.0;
-            fluence(&scene, at, orders, None, stream, |_, value| sum += value[0]);
+            fluence(&scene, at, orders, Guides::default(), stream, |_, value| sum += value[0]);
             sum
         });
         verdict::agree(&format!("fluence {orders:?}"), &connected, &paths, 0.5 * connected.mean(), 3);

@@ -9,6 +9,7 @@ use crate::support::scenes::{Incidence, cuboid, region, slab, transmittance};
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
+use turbid::integrators::Guides;
 use turbid::light::{Light, VolumeSource};
 use turbid::scene::{Orders, Quantity, Scene, SceneParts, Sensor};
 use turbid::sensor::{NoError, PathSettings, by_paths, sample_guided};
@@ -74,8 +75,9 @@ fn enough_paths_have_their_error() {
 }
 
 fn guided(scene: &Scene, quantity: &Quantity, n: u64, seed: u64) -> Moments {
-    let guide = Guide::new(scene).unwrap();
-    let moments = numbers(n, seed, |s| sample_guided(scene, quantity, Orders::ALL, Some(&guide), s).0[0]);
+    let windows = Guide::new(scene).unwrap();
+    let guides = Guides { windows: Some(&windows), directions: None };
+    let moments = numbers(n, seed, |s| sample_guided(scene, quantity, Orders::ALL, guides, s).0[0]);
     let relative = moments.std_error() / moments.mean();
     assert!(relative < 0.05, "windows do not help: {relative}");
     moments

@@ -6,6 +6,7 @@ mod deep;
 mod ends;
 mod extremes;
 mod golden;
+mod guided;
 mod invariants;
 mod lamps;
 mod ledger;

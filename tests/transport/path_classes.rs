@@ -10,7 +10,7 @@ use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Shape;
-use turbid::integrators::{Layer, Layers, path};
+use turbid::integrators::{Guides, Layer, Layers, path};
 use turbid::math::{FOUR_PI, Ray, atan2, exp};
 use turbid::photons::{Flags, Histories, Photon, PhotonMap, is_in, is_indirect, shoot};
 use turbid::rng::{Purpose, Stream};
@@ -265,10 +265,14 @@ fn layers_add_up_to_the_radiance() {
         let stream = || Stream::new(5, Purpose::Paths, 0, history);
         let (layers, rays) = path::layers(&scene, ray, None, SURROUNDINGS, &mut stream());
         let mut sum = Spectrum::ZERO;
-        let same =
-            path::radiance(&scene, (ray, SURROUNDINGS), Orders::ALL, None, &mut stream(), |_, value| {
-                sum += value
-            });
+        let same = path::radiance(
+            &scene,
+            (ray, SURROUNDINGS),
+            Orders::ALL,
+            Guides::default(),
+            &mut stream(),
+            |_, value| sum += value,
+        );
         assert_eq!(rays, same);
         // A dozen terms, all positive, in another order.
         let difference = (layers.total() - sum).max().abs();

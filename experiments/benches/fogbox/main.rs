@@ -8,12 +8,14 @@
 //! spread of independent rounds; that their means are right is tested beside it, on the mean radiance of the picture,
 //! against converged values of an independent renderer, outside of the box against the first row. Of the photon mapper
 //! (`-- maps`) it is the error against the mean of all path-traced rounds, split into the spread between maps and the rest, its bias. `-- lines` reads the volume map in
-//! balls along each ray, about it and by beams.
+//! balls along each ray, about it and by beams; `-- guided` leads paths to where photons came from, in scenes of the gallery too (a name
+//! beside it: that one alone).
 //!
 //! The peer renders the same scene if there is a Python that knows it: `python3 -m venv VENV &&
 //! VENV/bin/pip install mitsuba numpy`, then `TURBID_PYTHON=VENV/bin/python` before the command. Its just-in-time
 //! compiled variant runs too if `DRJIT_LIBLLVM_PATH` names an LLVM library that works with it.
 
+mod guided;
 mod lines;
 mod maps;
 mod others;
@@ -59,15 +61,17 @@ fn main() -> Result<()> {
     }
     let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|word| name.contains(word));
     let mut out = std::io::stdout().lock();
+    if wanted.iter().any(|word| word == "guided") {
+        let names: Vec<&String> = wanted.iter().filter(|word| *word != "guided").collect();
+        let is_named = |name: &str| names.is_empty() || names.iter().any(|word| name == *word);
+        head(&mut out, guided::NAMES)?;
+        return guided::compare(&mut out, &is_named, rounds_wanted);
+    }
     writeln!(
         out,
         "{WIDTH} x {WIDTH} pixels, {SAMPLES} samples per pixel and round, {rounds_wanted} rounds in turn"
     )?;
-    writeln!(
-        out,
-        "{:5} {:20} {:>8} {:>12} {:>22} {:>9} {:>7}",
-        "", "", "s", "1/(MSE s)", "times the first", "mean", "z"
-    )?;
+    head(&mut out, 5)?;
     for (fog, converged) in FOGS {
         let has_maps = fog == "iso" && is_wanted("maps");
         if !is_wanted(fog) && !has_maps {
@@ -94,6 +98,15 @@ fn main() -> Result<()> {
         lines_of(&mut out, name, &rounds, None)?;
     }
     Ok(())
+}
+
+/// The names of the columns, the first of this width.
+fn head(out: &mut impl Write, width: usize) -> Result<()> {
+    Ok(writeln!(
+        out,
+        "{:width$} {:20} {:>8} {:>12} {:>22} {:>9} {:>7}",
+        "", "", "s", "1/(MSE s)", "times the first", "mean", "z"
+    )?)
 }
 
 /// Rounds of the peer's variants that render the scene of this name in a folder, and of the path tracer, in turn.

@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::integrators::Guides;
 use turbid::scene::{Orders, Scene, SceneFile};
 use turbid::sensor::{
     Measurement, PathSettings, PhotonSettings, TallySettings, by_guided_paths, by_paths, by_photons,
     by_tallies,
 };
-use turbid::transport::NoProgress;
+use turbid::transport::{Guide, NoProgress};
 use turbid_analytic::Value;
 
 /// Larger tables are none.
@@ -102,10 +103,12 @@ impl Bench {
     ///
     /// # Errors
     /// Those of the path tracer
-    pub fn guided_paths(&self, scene: &Scene, samples: u64) -> anyhow::Result<Vec<Measurement>> {
+    pub fn windowed_paths(&self, scene: &Scene, samples: u64) -> anyhow::Result<Vec<Measurement>> {
         let settings =
             PathSettings { samples, seed: self.seed, replicate: self.replicate(), orders: Orders::ALL };
-        Ok(by_guided_paths(scene, &settings, &NoProgress)?)
+        let windows = Guide::new(scene)?;
+        let guides = Guides { windows: Some(&windows), directions: None };
+        Ok(by_guided_paths(scene, &settings, guides, &NoProgress)?)
     }
 
     /// Every sensor of a scene by 64 photon maps of so many photons, counted evenly in balls of this radius.

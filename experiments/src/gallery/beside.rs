@@ -118,13 +118,15 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
 }
 
 /// The methods without photon maps that race against a picture by photons: paths, what the reference is made with, light
-/// tracing of caustics where there may be some, and of all that scatters where the scene permits it.
+/// tracing of caustics where there may be some, and of all that scatters where the scene permits it; and guided paths where there may be
+/// caustics: elsewhere in these scenes photons know no better directions, and they would be paths.
 pub(super) fn rivals(studio: &Studio) -> Vec<ByLight> {
     let mut methods: Vec<ByLight> = Vec::new();
     let has_caustics = Emitter::towards_specular(&studio.scene).is_some();
-    let caustics = if has_caustics { ByLight::CAUSTICS } else { ByLight::NOTHING };
-    for method in [ByLight::NOTHING, studio.picture.by_light, caustics, ByLight::ALL] {
-        let is_new = methods.iter().all(|other| other.layers != method.layers);
+    let one_of = |method| if has_caustics { method } else { ByLight::NOTHING };
+    let (caustics, guided) = (one_of(ByLight::CAUSTICS), one_of(ByLight::GUIDED));
+    for method in [ByLight::NOTHING, studio.picture.by_light, caustics, ByLight::ALL, guided] {
+        let is_new = methods.iter().all(|other| (other.layers, other.guide) != (method.layers, method.guide));
         if is_new && method.check(&studio.scene, &studio.camera).is_ok() {
             methods.push(method);
         }

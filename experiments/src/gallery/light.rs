@@ -8,9 +8,9 @@
 use anyhow::ensure;
 use std::ops::Range;
 use turbid::Spectrum;
-use turbid::integrators::{Layer, Layers, Splat, light_tracing, path};
+use turbid::integrators::{Guides, Layer, Layers, Splat, light_tracing, path};
 use turbid::math::Ray;
-use turbid::photons::Emitter;
+use turbid::photons::{DirectionSettings, Directions, Emitter};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Orders, Scene};
 use turbid::sensor::{Film, Streams, extend};
@@ -27,19 +27,25 @@ pub struct ByLight {
     pub layers: &'static [Layer],
     /// Photons that are sent out for each sample a pixel of the paths, over the number of pixels times a thousand.
     pub permille: u64,
+    /// Photons by which paths are led, none if 0.
+    pub guide: u64,
 }
 
 impl ByLight {
     /// Nothing: all by paths.
-    pub const NOTHING: ByLight = ByLight { layers: &[], permille: 0 };
+    pub const NOTHING: ByLight = ByLight { layers: &[], permille: 0, guide: 0 };
+
+    /// Nothing, and paths are led to where photons came from.
+    pub const GUIDED: ByLight = ByLight { guide: 200_000, ..Self::NOTHING };
 
     /// What arrives by specular surfaces alone.
-    pub const CAUSTICS: ByLight = ByLight { layers: &[Layer::Caustic], permille: 1000 };
+    pub const CAUSTICS: ByLight = ByLight { layers: &[Layer::Caustic], permille: 1000, guide: 0 };
 
     /// All that scatters.
     pub const ALL: ByLight = ByLight {
         layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect, Layer::Single, Layer::Multiple],
         permille: 1000,
+        guide: 0,
     };
 
     /// Whether a layer is found by light.
@@ -50,6 +56,7 @@ impl ByLight {
     /// The method's name.
     pub fn name(&self) -> &'static str {
         match self.layers {
+            [] if self.guide > 0 => "guided paths",
             [] => "paths",
             [Layer::Caustic] => "paths with caustics by light tracing",
             [Layer::Caustic, Layer::Indirect] => "paths with caustics and indirect light by light tracing",
@@ -64,13 +71,21 @@ impl ByLight {
 
     /// One sample of what paths have to find: all layers where a specular surface is seen, else those that light tracing
     /// leaves out.
-    fn rest(&self, scene: &Scene, ray: Ray, within: usize, stream: &mut Stream) -> Layers {
+    fn rest(
+        &self,
+        scene: &Scene,
+        (ray, within): (Ray, usize),
+        guides: Guides<'_>,
+        stream: &mut Stream,
+    ) -> Layers {
+        let mut layers = Layers::ZERO;
         if self.layers.is_empty() || is_specular_ahead(scene, &ray) {
-            return path::layers(scene, ray, None, within, stream).0;
+            let collect = |_, layer, value| layers[layer] += value;
+            path::guided_classes(scene, (ray, within), Orders::ALL, guides, stream, collect);
+            return layers;
         }
         // What is not scattered has order 0.
         let orders = if self.has_all() { Orders { min: 0, max: Some(0) } } else { Orders::ALL };
-        let mut layers = Layers::ZERO;
         path::classes(scene, ray, None, within, orders, stream, |_, layer, value| {
             if !self.has(layer) {
                 layers[layer] += value;
@@ -143,6 +158,8 @@ pub struct Unbiased<'a> {
     pub camera: &'a Camera,
     /// Random numbers.
     pub streams: Streams,
+    /// Where photons came from, if paths are led there.
+    directions: Option<Directions>,
     /// What paths have found.
     film: Film,
     /// What light tracing has found, times the number of photons.
@@ -153,7 +170,7 @@ impl<'a> Unbiased<'a> {
     /// A picture without any sample.
     ///
     /// # Errors
-    /// those of [`ByLight::check`]
+    /// those of [`ByLight::check`] and of [`Directions::learn`]
     pub fn new(
         by_light: ByLight,
         scene: &'a Scene,
@@ -163,7 +180,11 @@ impl<'a> Unbiased<'a> {
         by_light.check(scene, camera)?;
         let film = Film::new(camera.width(), camera.height());
         let found = vec![Layers::ZERO; film.pixels().len()];
-        Ok(Unbiased { by_light, scene, camera, streams, film, found })
+        let Streams { seed, replicate } = streams;
+        let settings = DirectionSettings { histories: by_light.guide, seed, replicate, share: None };
+        let learn = || Directions::learn(scene, &settings, &NoProgress);
+        let directions = (by_light.guide > 0).then(learn).transpose()?;
+        Ok(Unbiased { by_light, scene, camera, streams, directions, film, found })
     }
 
     /// Samples a pixel so far.
@@ -178,9 +199,10 @@ impl<'a> Unbiased<'a> {
     pub fn extend(&mut self, samples: u64, progress: &dyn Progress) -> anyhow::Result<()> {
         let Unbiased { by_light, scene, camera, streams, .. } = *self;
         let (first, interior) = (self.samples(), scene.interior_at(camera.position()));
+        let guides = Guides { windows: None, directions: self.directions.as_ref() };
         extend(&mut self.film, camera, samples, streams, progress, |ray, stream, n: &mut u64| {
             *n += 1;
-            by_light.rest(scene, ray, interior, stream)
+            by_light.rest(scene, (ray, interior), guides, stream)
         })?;
         by_light.trace(scene, camera, first..first + samples, streams, &mut self.found)
     }
@@ -283,7 +305,7 @@ mod tests {
     "#;
 
     /// Layer by layer, paths alone and both together are the same picture: of the caustic, which is by light where the floor
-    /// is seen and by paths where the ball is, of what paths alone find, and with all that scatters by light.
+    /// is seen and by paths where the ball is, of what paths alone find, with all that scatters by light, and by guided paths.
     #[test]
     fn no_light_is_lost_or_counted_twice() {
         let file = SceneFile::from_toml(BALL).unwrap();
@@ -309,7 +331,7 @@ mod tests {
             all
         };
         let paths = moments(ByLight::NOTHING, 0);
-        for (by_light, first) in [(ByLight::CAUSTICS, 1000), (ByLight::ALL, 2000)] {
+        for (by_light, first) in [(ByLight::CAUSTICS, 1000), (ByLight::ALL, 2000), (ByLight::GUIDED, 3000)] {
             let both = moments(by_light, first);
             for ((layer, a), b) in Layer::ALL.into_iter().zip(&paths).zip(&both).take(4) {
                 let std_error = (a.std_error() * a.std_error() + b.std_error() * b.std_error()).sqrt();

@@ -142,7 +142,8 @@ fn method(settings: &Settings) -> Markup {
         }
         p {
             "Paths from the eye and light tracing, photons connected to the camera from where they scatter, race for "
-            "the place of the rival wherever the scene permits both; the one with the smaller error is shown. In light tracing too, paths find lamps "
+            "the place of the rival wherever the scene permits both, and where there are specular bodies guided paths too, whose directions follow where 200,000 "
+            "photons came from; the one with the smaller error is shown. In light tracing too, paths find lamps "
             "and what is seen by mirrors and through glass."
         }
         p {
@@ -305,7 +306,8 @@ fn winner(c: &Compared) -> String {
         );
     }
     let (first, rest) = c.rival.split_at(1);
-    let wins = if c.rival.starts_with("paths") { "win" } else { "wins" };
+    let is_plural = ["paths", "guided paths"].iter().any(|plural| c.rival.starts_with(plural));
+    let wins = if is_plural { "win" } else { "wins" };
     format!(
         "{}{rest} {wins} by a factor of {factor}: the photon map has an error of {errors}.",
         first.to_uppercase()

@@ -250,6 +250,7 @@ pub const ALL: &[Picture] = &[
         by_light: ByLight {
             layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect, Layer::Single, Layer::Multiple],
             permille: 500,
+            guide: 0,
         },
         lines: Some(Lines {
             parts: 4,

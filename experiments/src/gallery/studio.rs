@@ -105,7 +105,11 @@ impl<'a> Studio<'a> {
 
     /// What a render without photon maps will be called.
     pub fn unbiased_words(&self, by_light: ByLight, samples: u64, replicate: u64) -> String {
-        self.words(&format!("{} {}", by_light.name(), by_light.permille), samples, replicate)
+        self.words(
+            &format!("{} {}", by_light.name(), by_light.permille.max(by_light.guide)),
+            samples,
+            replicate,
+        )
     }
 
     /// Fills the maps of a replicate, with `factor` times the photons of the original.

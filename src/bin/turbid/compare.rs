@@ -95,7 +95,7 @@ impl Compared {
     /// The reference of a picture, from streams of its own.
     pub fn reference(
         &self,
-        scene: &Scene,
+        paths: &Method<'_>,
         camera: &Camera,
         picture: &Film,
         streams: Streams,
@@ -104,7 +104,7 @@ impl Compared {
         let pixels = film.pixels().len() as u64;
         let take = |film: &mut Film, samples: u64| -> anyhow::Result<()> {
             let bar = Bar::stage("reference", samples.saturating_mul(pixels));
-            let work = Method::Paths(scene).extend(film, camera, samples, streams, &bar);
+            let work = paths.extend(film, camera, samples, streams, &bar);
             bar.finish();
             work.context("--compare paths")?;
             Ok(())

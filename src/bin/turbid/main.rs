@@ -11,6 +11,7 @@ mod completions;
 mod export;
 mod given;
 mod import;
+mod learn;
 mod load;
 mod made;
 mod man;

@@ -1,6 +1,7 @@
 //! `turbid measure`: the sensors of a scene, by paths, bidirectional paths, photons or light tracing.
 
 use super::given::{Given, notes as notes_of_given};
+use super::learn::learn;
 use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::options;
@@ -14,17 +15,19 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
 use turbid::geometry::Voxels;
+use turbid::integrators::Guides;
 use turbid::math::Positive;
 use turbid::output::{
     RunInfo, check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
 };
-use turbid::photons::{Ledger, PeakBytes, Photon};
+use turbid::photons::{Ledger, MOST_HISTORIES, PeakBytes, Photon};
 use turbid::scene::{Binned, Orders, Quantity, Scene, Sensor, Space};
 use turbid::sensor::{
-    Measurement, NoError, PathSettings, PhotonReadings, PhotonSettings, TallySettings,
-    by_bidirectional_paths, by_given_photons, by_guided_paths, by_paths, by_photons_in_passes, by_tallies,
+    Measurement, NoError, PathSettings, PhotonReadings, PhotonSettings, Streams, TallySettings,
+    by_bidirectional_paths, by_given_photons, by_guided_paths, by_photons_in_passes, by_tallies, check_paths,
     forecast, given_bytes, row_bytes, tally_bytes, usual_reach,
 };
+use turbid::transport::Guide;
 
 /// Measure the sensors of a scene by paths, bidirectional paths, photons or light tracing.
 ///
@@ -54,6 +57,11 @@ pub struct Measure {
     /// paths.
     #[arg(long)]
     weight_windows: bool,
+    /// Path guiding: send out this many photons, such as 2e5, and lead paths to where they came from: for caustics, and light that comes
+    /// by way of mirrors or few bright places. Unbiased whatever the photons say; where they say little, paths are left as they are. Only
+    /// with paths, and not with --weight-windows.
+    #[arg(long, value_name = "N", conflicts_with = "weight_windows", value_parser = whole::<u64>(1..=MOST_HISTORIES))]
+    guide: Option<u64>,
     /// Paths a sensor, or a bin of one, such as 1e6.
     #[arg(long, value_parser = parse_count, default_value = "100000")]
     samples: u64,
@@ -267,6 +275,8 @@ impl Measure {
             seed: self.seed,
             orders,
             samples: by(&["--with paths", "--with bidirectional"]).then_some(self.samples),
+            weight_windows: self.weight_windows.then_some(true),
+            guide: self.guide,
             photons: by(&["--with photons", "--with light"]).then_some(self.photons),
             version: env!("CARGO_PKG_VERSION").to_string(),
             revision: revision().map(str::to_string),
@@ -382,13 +392,17 @@ impl Measure {
             PathSettings { samples: self.samples, seed: self.seed, replicate: 0, orders: self.orders };
         self.check_bins(scene, row_bytes(scene))?;
         let bins: u64 = scene.sensors().iter().map(|s| s.binned().map_or(1, Binned::bins) as u64).sum();
+        check_paths(scene).with_context(|| self.source.name())?;
+        let windows = self.weight_windows.then(|| Guide::new(scene)).transpose();
+        let windows = windows.with_context(|| self.source.name())?;
+        let directions = learn(scene, self.guide, Streams { seed: self.seed, replicate: 0 })
+            .with_context(|| self.source.name())?;
+        let guides = Guides { windows: windows.as_ref(), directions: directions.as_ref() };
         let bar = Bar::new(self.samples.saturating_mul(bins));
-        let read = match self.with {
-            With::Bidirectional => by_bidirectional_paths,
-            _ if self.weight_windows => by_guided_paths,
-            _ => by_paths,
+        let measurements = match self.with {
+            With::Bidirectional => by_bidirectional_paths(scene, &settings, &bar),
+            _ => by_guided_paths(scene, &settings, guides, &bar),
         };
-        let measurements = read(scene, &settings, &bar);
         bar.finish();
         Ok((measurements.with_context(|| self.source.name())?, Vec::new()))
     }

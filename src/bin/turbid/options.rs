@@ -23,6 +23,7 @@ pub const MEASURE: Table = &[
     ("confined", ALL),
     ("with", ALL),
     ("weight_windows", PATHS),
+    ("guide", PATHS),
     ("samples", UNBIASED),
     ("photons", SHOT),
     ("maps", PHOTONS),
@@ -93,6 +94,7 @@ pub const RENDER: Table = &[
     // Light tracing leaves out what paths hold.
     ("compare", WHOLE),
     ("compare_samples", WHOLE),
+    ("guide", &["--with paths", "--compare"]),
     ("width", ALL),
     ("height", ALL),
     ("exposure", ALL),
@@ -183,7 +185,7 @@ mod tests {
     use clap::{Arg, Command, CommandFactory};
     use std::collections::BTreeSet;
 
-    /// The commands with their tables, what can be asked for of each, and words that ask for it.
+    /// The commands with their tables, what can be asked for of each, joined by plus signs, and words that ask for it.
     type Asked = (&'static str, &'static [&'static str]);
     const COMMANDS: [(&str, Table, &[Asked]); 4] = [
         (
@@ -213,6 +215,7 @@ mod tests {
                 ("--with bidirectional", &["-o", "a.exr", "--with", "bidirectional"]),
                 ("--with photons", &["-o", "a.exr"]),
                 ("--with light", &["-o", "a.exr", "--with", "light"]),
+                ("--with photons + --compare", &["-o", "a.exr", "--compare", "paths"]),
             ],
         ),
         (
@@ -281,12 +284,14 @@ mod tests {
         let mut refused = 0;
         for (name_of_command, table, asked) in COMMANDS {
             let command = subcommand(name_of_command);
-            for (method, base) in asked {
+            for (asked, base) in asked {
+                let asked: Vec<&str> = asked.split(" + ").collect();
+                let method = asked[0];
                 let bare: Vec<&str> =
                     ["turbid", name_of_command, "slab"].iter().chain(*base).copied().collect();
                 let matches = Arguments::command().try_get_matches_from(&bare).unwrap();
                 let (_, given) = matches.subcommand().unwrap();
-                assert!(check(given, table, &[method]).is_ok(), "{bare:?}");
+                assert!(check(given, table, &asked).is_ok(), "{bare:?}");
                 for option in own_arguments(&command).filter(|a| a.get_long().is_some()) {
                     let id = option.get_id().as_str();
                     let (_, needs) = table.iter().find(|(row, _)| *row == id).unwrap();
@@ -294,8 +299,8 @@ mod tests {
                     // What conflicts with the words of the method itself, such as two values of one option.
                     let Ok(matches) = Arguments::command().try_get_matches_from(&words) else { continue };
                     let (_, given) = matches.subcommand().unwrap();
-                    let told = check(given, table, &[method]).map_err(|error| error.to_string());
-                    if needs.is_empty() || needs.contains(method) {
+                    let told = check(given, table, &asked).map_err(|error| error.to_string());
+                    if needs.is_empty() || asked.iter().any(|asked| needs.contains(asked)) {
                         assert_eq!(told, Ok(()), "{words:?}");
                     } else {
                         let told = told.unwrap_err();

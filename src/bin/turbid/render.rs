@@ -1,6 +1,7 @@
 //! `turbid render`: a picture of a scene, by photons, by paths, by bidirectional paths or by light tracing.
 
 use super::compare::Compared;
+use super::learn::learn;
 use super::load::Source;
 use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
@@ -12,7 +13,7 @@ use super::progressive::{Progressive, Sequence, Until};
 use super::provenance::{map_settings, mapper_settings};
 use super::revision::revision;
 use super::shared::{note, on_threads, parse_count, print, whole};
-use super::statistics::{MAPS, print_statistics};
+use super::statistics::{LEARNING, MAPS, print_statistics};
 use anyhow::{Context, bail};
 use clap::{ArgMatches, ValueEnum};
 use cpu_time::ProcessTime;
@@ -22,7 +23,7 @@ use turbid::integrators::mapper::{Mapper, Report, Settings};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
 use turbid::photons::beams::BeamMap;
 use turbid::photons::maps::fill_part;
-use turbid::photons::{Part, PhotonMap};
+use turbid::photons::{MOST_HISTORIES, Part, PhotonMap};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Blocks, Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, PictureError, Streams};
 
@@ -82,6 +83,11 @@ pub struct Render {
     passes: u64,
     #[command(flatten)]
     compared: Compared,
+    /// Path guiding: send out this many photons, such as 2e5, and lead paths, those of --with paths and those of --compare, to where they
+    /// came from: for caustics, and light that comes by way of mirrors or few bright places. Unbiased whatever the photons say; where they
+    /// say little, paths are left as they are.
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(1..=MOST_HISTORIES))]
+    guide: Option<u64>,
     #[command(flatten)]
     frame: Frame,
     #[command(flatten)]
@@ -157,7 +163,9 @@ const SAMPLES: u64 = 16;
 impl Render {
     /// Draws and writes.
     pub fn run(self, given: &ArgMatches) -> anyhow::Result<()> {
-        options::check(given, options::RENDER, &[&format!("--with {}", self.with.name())])?;
+        let method = format!("--with {}", self.with.name());
+        let asked = [&method, "--compare"];
+        options::check(given, options::RENDER, &asked[..1 + usize::from(self.compared.is_asked_for())])?;
         let extension = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
         if !extension.eq_ignore_ascii_case("exr") {
             bail!("--output is {}; allowed: a file name that ends in .exr", self.output.display());
@@ -235,7 +243,9 @@ impl Render {
                 self.sequence(&scene, (&scene_text, files), &camera, usual)
             }
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
-                Ok((self.fill(film, stages, left, &Method::Paths(&scene), (&camera, streams))?, None))
+                let directions = stages.time(LEARNING, || learn(&scene, self.guide, streams))?;
+                let method = Method::of_paths(&scene, directions.as_ref());
+                Ok((self.fill(film, stages, left, &method, (&camera, streams))?, None))
             }),
             With::Bidirectional => self.repeat(&camera, |streams, stages, left, film| {
                 let method = Method::Bidirectional(&scene);
@@ -321,8 +331,11 @@ impl Render {
         }
         // The repetition that the picture does not have.
         let streams = Streams { seed: self.seed, replicate: made.repetitions };
-        let reference =
-            on_threads(self.threads, || self.compared.reference(scene, camera, &made.film, streams))?;
+        let reference = on_threads(self.threads, || {
+            let directions = learn(scene, self.guide, streams)?;
+            let method = Method::of_paths(scene, directions.as_ref());
+            self.compared.reference(&method, camera, &made.film, streams)
+        })?;
         let error = match self.with {
             With::Paths | With::Bidirectional if made.film.samples() >= 2 => PictureError::ByPixel,
             _ if made.repetitions >= 2 => PictureError::ByMap(&made.block_means),
@@ -555,6 +568,7 @@ impl Render {
             "width": made.film.width(),
             "height": made.film.height(),
             "seed": self.seed,
+            "guide": self.guide.filter(|_| self.with == With::Paths),
             "importance": by_photons && self.photons.is_by_importance,
             "repetitions": made.repetitions,
             "progressive": self.progressive.is_asked_for,

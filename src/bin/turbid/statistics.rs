@@ -11,6 +11,9 @@ use turbid::photons::maps::MapReport;
 /// The stage that fills the maps: emission and building the trees.
 pub const MAPS: &str = "maps";
 
+/// The stage that learns where light comes from.
+pub const LEARNING: &str = "directions";
+
 /// Prints what a picture took.
 pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
     let mut text = String::new();

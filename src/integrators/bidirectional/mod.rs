@@ -72,8 +72,8 @@ pub fn fluence(
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    let rays = aimed_fluence(scene, position, orders, stream, &mut collect);
-    let start = anywhere(scene, position, stream);
+    let rays = aimed_fluence(scene, (position, None), orders, stream, &mut collect);
+    let start = anywhere(scene, (position, None), stream);
     follow((scene, None), start, orders, rays, stream, |order, _, value| collect(order, value))
 }
 

@@ -262,7 +262,7 @@ fn run(bench: &Bench, set: &Set, bodies: &[Body], points: &[Point]) -> anyhow::R
                 // Deep in a shield few paths find the source by themselves where light is scattered.
                 let found = match case {
                     "i" => bench.paths(&scene, bench.pick(10_000, 1_000_000))?,
-                    _ => bench.guided_paths(&scene, bench.pick(2_000, 500_000))?,
+                    _ => bench.windowed_paths(&scene, bench.pick(2_000, 500_000))?,
                 };
                 Ok(asked
                     .iter()

@@ -1,0 +1,72 @@
+//! Paths led by photons beside paths that are not: what learning directions is worth, its own time included.
+
+use crate::{Round, WIDTH, lines_of, scenes, timed};
+use anyhow::{Context, Result};
+use std::io::Write;
+use turbid::photons::{DirectionSettings, Directions};
+use turbid::scene::{Camera, Scene, SceneFile};
+use turbid::sensor::{Film, Method, Streams};
+use turbid::transport::NoProgress;
+
+/// Histories that directions are learned from.
+const HISTORIES: u64 = 200_000;
+/// Samples a pixel and round.
+const SAMPLES: u64 = 64;
+/// Width of the column of scenes.
+pub const NAMES: usize = 11;
+/// The boxes of fog, and scenes of the gallery.
+const SCENES: [&str; 9] =
+    ["iso", "hg", "het", "cornell-fog", "cloud", "dusty-room", "cognac", "pool", "sunbeams"];
+
+fn load(name: &str) -> Result<(Scene, Camera)> {
+    if ["iso", "hg", "het"].contains(&name) {
+        return Ok((scenes::load(name)?, scenes::camera()?));
+    }
+    let path = scenes::folder().join(format!("{name}.toml"));
+    let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    let scene = SceneFile::from_toml(&text)?.scene(&scenes::folder())?;
+    let camera = scene.camera().context("no camera")?;
+    let height = WIDTH as u64 * u64::from(camera.height()) / u64::from(camera.width());
+    let camera = camera.sized(Some(WIDTH as u32), Some(height as u32))?;
+    Ok((scene, camera))
+}
+
+/// Prints two rows a scene, in turn, and what learning took and led.
+pub fn compare(out: &mut impl Write, wanted: &dyn Fn(&str) -> bool, count: u64) -> Result<()> {
+    writeln!(out, "{SAMPLES} samples a pixel, directions by {HISTORIES} histories")?;
+    for name in SCENES.into_iter().filter(|name| wanted(name)) {
+        let (scene, camera) = load(name)?;
+        let (mut paths, mut guided) = (Vec::<Round>::new(), Vec::<Round>::new());
+        let (mut learning, mut led) = (0.0, [[0; 2]; 2]);
+        for replicate in 0..count {
+            let streams = Streams { seed: 1, replicate };
+            let picture = |method: Method<'_>, streams: Streams| -> Result<Film> {
+                Ok(method.render(&camera, SAMPLES, streams, &NoProgress)?)
+            };
+            paths.push(timed(|| picture(Method::Paths(&scene), streams))?);
+            let mut spent = None;
+            guided.push(timed(|| {
+                let start = cpu_time::ThreadTime::now();
+                let settings = DirectionSettings { histories: HISTORIES, seed: 1, replicate, share: None };
+                let directions = Directions::learn(&scene, &settings, &NoProgress)?;
+                led = directions.counts();
+                spent = Some(start.elapsed().as_secs_f64());
+                picture(Method::Guided(&scene, &directions), Streams { seed: 2, ..streams })
+            })?);
+            learning += spent.unwrap_or_default() / count as f64;
+        }
+        lines_of(
+            out,
+            &format!("{name:NAMES$}"),
+            &[("paths".into(), paths), ("guided paths".into(), guided)],
+            None,
+        )?;
+        let [[media, in_media], [surfaces, on_surfaces]] = led;
+        writeln!(
+            out,
+            "{:NAMES$} learning takes {learning:.2} s; led in {in_media} of {media} cells in media, {on_surfaces} of {surfaces} on surfaces",
+            ""
+        )?;
+    }
+    Ok(())
+}
