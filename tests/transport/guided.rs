@@ -161,7 +161,7 @@ fn the_same_bits_on_any_number_of_threads() {
     assert!(film(1, &[20]) == film(2, &[3, 17]));
 }
 
-/// No photons, and a share of nothing or of all, are refused; a scene without events leads nobody.
+/// No photons, more than fit in memory, and a share of nothing or of all, are refused; a scene without events leads nobody.
 #[test]
 fn what_cannot_be_learned_from() {
     let scene = below_a_pane(0.0, 2.0);
@@ -175,6 +175,10 @@ fn what_cannot_be_learned_from() {
         let text = refused(histories, share);
         assert!(text.contains("allowed"), "{text}");
     }
+    let settings = DirectionSettings { histories: MOST_HISTORIES, seed: 1, replicate: 0, share: None };
+    let cloud = slab(20.0, 1.0, 0.0, Incidence::Beam(1.0));
+    let text = Directions::learn(&cloud, &settings, &NoProgress).unwrap_err().to_string();
+    assert!(text.contains("would store") && text.contains("allowed: at most"), "{text}");
     let empty = bounded(Vec::new(), Vec::new(), vec![isotropic(sphere(DVec3::ZERO, 1.0), Faces::Both)]);
     let directions = learned(&empty, 1000, None);
     assert_eq!(directions.counts().map(|[_, used]| used), [0, 0]);
