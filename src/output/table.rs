@@ -328,7 +328,7 @@ mod tests {
         let csv = text(Format::Csv);
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines[0], [BIN_COLUMNS.join(","), RUN_COLUMNS.join(",")].join(","));
-        let run = ",light,7,0..,,1000,,,50,,,,,,,,,,,cone,,,0.1.0,";
+        let run = ",light,7,0..,,,,1000,,,50,,,,,,,,,,,cone,,,0.1.0,";
         assert_eq!(
             lines[1],
             format!("\"probe, centre\",fluence,W/L^2,1,2,0,0.1,-2.0,1e-300,0.3333333333333333,0.1,64{run}")
