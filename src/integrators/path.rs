@@ -49,8 +49,8 @@ impl Rays {
     }
 }
 
-/// What is known of where light is, for paths to be led there, by one of these: each ends what it does not lead. Every mean stays, whatever is
-/// known.
+/// What is known of where light is, for paths to be led there: by one of these, since windows end what directions have led to bright
+/// places. Every mean stays, whatever is known.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Guides<'a> {
     /// Weight windows, which split paths on their way to the lights and end them elsewhere: where light is found through many mean

@@ -1,15 +1,16 @@
-//! Directions that light comes from, learned from photons: the guide of paths.
+//! Directions that light comes from, learned from photons: path guiding.
 //!
-//! Path guiding. A path finds a small lamp by connections, and what the lamp throws on a wall by luck: where a mirror, a lens or a gap leaves one
+//! A path finds a small lamp by connections, and what the lamp throws on a wall by luck: where a mirror, a lens or a gap leaves one
 //! bright patch, one direction in thousands brings all the light. Photons know. Those that paths do not connect to, all but direct
-//! ones, and these too where a light fills space, are sorted into cells of a tree, some hundreds each, apart for media and for surfaces by the axis that their normal is
-//! next to; every cell learns a histogram of the directions that its photons came from ([`Lobe`]), and how much of it to mix with
-//! the surface's or phase function's own directions, so that the second moment of what a path brings is least (`choice`): none
-//! at all, where it gains too little. A mixture of known density keeps every mean, whatever was learned.
+//! ones, and these too where a light fills space, are sorted into cells of a tree, some hundreds each, apart for media and for
+//! surfaces by the axis that their normal is next to; every cell learns a histogram of the directions that its photons came from
+//! ([`Lobe`]), and how much of it to mix with the surface's or phase function's own directions, so that the second moment of what
+//! a path brings is least (`choice`): none at all, where it gains too little. A mixture of known density keeps every mean, whatever
+//! was learned.
 //!
 //! # Source
-//! Jensen 1995, "Importance driven path tracing using the photon map"; Vorba et al. 2014; Mueller et al. 2017; in media Herholz et al. 2019. That resolution and share are chosen by
-//! photons that the histogram does not hold is turbid's own.
+//! Jensen 1995, "Importance driven path tracing using the photon map"; Vorba et al. 2014; Mueller et al. 2017; in media Herholz et
+//! al. 2019. That resolution and share are chosen by photons that the histogram does not hold is turbid's own.
 
 mod cells;
 mod choice;
