@@ -1,40 +1,14 @@
 //! Cells of a tree that hold about as many photons each, and what each learned.
 
+use super::arrival::Arrival;
 use super::choice::{Own, lobe, plain};
 use crate::medium::Medium;
-use crate::photons::Photon;
 use crate::transport::Lobe;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 /// Photons that a cell holds at least, if there are as many in all, and less than twice as many.
 const LEAST: usize = 512;
-
-/// What is learned from a photon.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Arrival {
-    pub position: DVec3,
-    /// Unit direction towards where it came from.
-    pub from: Vec3,
-    /// Unit normal of the surface; 0 in a medium.
-    pub normal: Vec3,
-    /// Power of all channels together, but for a factor that all photons share.
-    pub power: f32,
-    /// Which part of the photons it belongs to.
-    pub part: usize,
-}
-
-impl Arrival {
-    pub fn new(photon: &Photon, part: usize) -> Self {
-        Arrival {
-            position: photon.position,
-            from: -photon.dir,
-            normal: photon.normal,
-            power: photon.power.element_sum(),
-            part,
-        }
-    }
-}
 
 /// A binary tree whose leaves are all as deep; none where nothing was learned that is of use.
 #[derive(Debug, Default)]

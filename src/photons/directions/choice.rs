@@ -6,7 +6,7 @@
 //! the product of the other two, the sum over cells of directions is unbiased for a histogram of that many photons, and chance
 //! that g has learned is no gain.
 
-use super::cells::Arrival;
+use super::arrival::Arrival;
 use crate::math::{Frame, cosine_pair, warp};
 use crate::phase::{Phase, PhaseFunction};
 use crate::transport::Lobe;

@@ -12,6 +12,7 @@
 //! Jensen 1995, "Importance driven path tracing using the photon map"; Vorba et al. 2014; Mueller et al. 2017; in media Herholz et
 //! al. 2019. That resolution and share are chosen by photons that the histogram does not hold is turbid's own.
 
+mod arrival;
 mod cells;
 mod choice;
 
@@ -21,7 +22,8 @@ use crate::light::Light;
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{Lobe, NoProgress, Progress};
-use cells::{Arrival, Cells};
+use arrival::Arrival;
+use cells::Cells;
 use glam::{DVec2, DVec3};
 
 /// Parts of the photons, by their histories, that know nothing of each other.
