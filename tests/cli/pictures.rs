@@ -86,6 +86,15 @@ fn guided_pictures_are_those_of_paths_where_photons_know_no_better() {
         (std::fs::read(path.with_extension("png")).unwrap(), std::fs::read(&path).unwrap(), notes)
     };
     let (paths, _, _) = render("paths.exr", &["--with", "paths"]);
+    let plain = succeeds(&[
+        "render",
+        text(&scene),
+        "-o",
+        text(&folder.0.path().join("plain.exr")),
+        "--with",
+        "paths",
+    ]);
+    assert!(!plain.contains("directions"), "{plain}");
     let (guided, file, notes) = render("guided.exr", &["--with", "paths", "--guide", "3000"]);
     assert!(paths == guided && notes.contains("--guide changes nothing"), "{notes}");
     assert!(String::from_utf8_lossy(&file).contains("\"guide\":3000"), "no provenance");

@@ -7,13 +7,12 @@ use turbid::photons::{DirectionSettings, Directions};
 use turbid::scene::Scene;
 use turbid::sensor::Streams;
 
-/// Learns from the photons of so many histories, if any are asked for.
+/// Learns from the photons of so many histories.
 pub fn learn(
     scene: &Scene,
-    histories: Option<u64>,
+    histories: u64,
     Streams { seed, replicate }: Streams,
-) -> anyhow::Result<Option<Directions>> {
-    let Some(histories) = histories else { return Ok(None) };
+) -> anyhow::Result<Directions> {
     let settings = DirectionSettings { histories, seed, replicate, share: None };
     let bar = Bar::stage("directions", histories);
     let learned = Directions::learn(scene, &settings, &bar);
@@ -24,5 +23,5 @@ pub fn learn(
             "--guide changes nothing: its photons know no place where another choice of directions would gain a fifth",
         )?;
     }
-    Ok(Some(learned))
+    Ok(learned)
 }

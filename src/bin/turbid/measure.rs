@@ -395,8 +395,9 @@ impl Measure {
         check_paths(scene).with_context(|| self.source.name())?;
         let windows = self.weight_windows.then(|| Guide::new(scene)).transpose();
         let windows = windows.with_context(|| self.source.name())?;
-        let directions = learn(scene, self.guide, Streams { seed: self.seed, replicate: 0 })
-            .with_context(|| self.source.name())?;
+        let streams = Streams { seed: self.seed, replicate: 0 };
+        let directions = self.guide.map(|histories| learn(scene, histories, streams)).transpose();
+        let directions = directions.with_context(|| self.source.name())?;
         let guides = Guides { windows: windows.as_ref(), directions: directions.as_ref() };
         let bar = Bar::new(self.samples.saturating_mul(bins));
         let measurements = match self.with {

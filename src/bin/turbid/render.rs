@@ -243,7 +243,8 @@ impl Render {
                 self.sequence(&scene, (&scene_text, files), &camera, usual)
             }
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
-                let directions = stages.time(LEARNING, || learn(&scene, self.guide, streams))?;
+                let learned = |histories| stages.time(LEARNING, || learn(&scene, histories, streams));
+                let directions = self.guide.map(learned).transpose()?;
                 let method = Method::of_paths(&scene, directions.as_ref());
                 Ok((self.fill(film, stages, left, &method, (&camera, streams))?, None))
             }),
@@ -332,7 +333,7 @@ impl Render {
         // The repetition that the picture does not have.
         let streams = Streams { seed: self.seed, replicate: made.repetitions };
         let reference = on_threads(self.threads, || {
-            let directions = learn(scene, self.guide, streams)?;
+            let directions = self.guide.map(|histories| learn(scene, histories, streams)).transpose()?;
             let method = Method::of_paths(scene, directions.as_ref());
             self.compared.reference(&method, camera, &made.film, streams)
         })?;
