@@ -43,6 +43,7 @@ mod panels;
 mod peierls;
 pub mod phase;
 mod poisson;
+pub mod power_series;
 pub mod progressive;
 pub mod quadrature;
 pub mod slab;

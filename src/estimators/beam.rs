@@ -68,7 +68,7 @@ impl BeamEstimator {
         (ray, span): (&Ray, Interval),
         (number, medium): (usize, &Medium),
         boundary: &Boundary<'_>,
-        passed: impl Fn(f64) -> Spectrum,
+        passed: &dyn Fn(f64) -> Spectrum,
     ) -> RayEstimate {
         self.across((map, ray, span), (number, medium), boundary, |_, foot| passed(foot))
     }
@@ -208,7 +208,7 @@ impl BeamEstimator {
         (ray, span): (&Ray, Interval),
         (number, medium): (usize, &Medium),
         boundary: &Boundary<'_>,
-        passed: impl Fn(f64) -> Spectrum,
+        passed: &dyn Fn(f64) -> Spectrum,
     ) -> RayEstimate {
         self.within((map, ray, span), (number, medium), boundary, |_, foot| passed(foot))
     }

@@ -45,7 +45,7 @@ impl PlaneEstimator {
         map: &PlaneMap,
         (ray, span): (&Ray, Interval),
         (scene, number): (&Scene, usize),
-        passed: impl Fn(f64) -> Spectrum,
+        passed: &dyn Fn(f64) -> Spectrum,
     ) -> RayEstimate {
         let medium = scene.medium(number);
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);

@@ -73,7 +73,7 @@ impl RayEstimator {
         (ray, span): (&Ray, Interval),
         medium: &Medium,
         boundary: &Boundary<'_>,
-        passed: impl Transmitted,
+        passed: &dyn Transmitted,
     ) -> RayEstimate {
         let radius = self.radius.get();
         let mut rows = passed.decay().and_then(|decay| Rows::new(self, map, (ray, medium), decay));
@@ -124,7 +124,7 @@ impl RayEstimator {
         (ray, span): (&Ray, Interval),
         medium: &Medium,
         boundary: &Boundary<'_>,
-        passed: impl Fn(f64) -> Spectrum,
+        passed: &dyn Fn(f64) -> Spectrum,
     ) -> RayEstimate {
         self.summed(
             map,

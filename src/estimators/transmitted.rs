@@ -22,7 +22,7 @@ impl<F: Fn(f64) -> Spectrum> Transmitted for F {
     }
 }
 
-impl Transmitted for &Passage<'_> {
+impl Transmitted for Passage<'_> {
     fn from(&self, t: f64) -> Spectrum {
         self.to(t)
     }

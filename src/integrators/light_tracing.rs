@@ -46,21 +46,21 @@ pub fn light_tracing(
     camera: &Camera,
     emitter: &Emitter,
     stream: &mut Stream,
-    splat: impl FnMut(Splat),
+    mut splat: impl FnMut(Splat),
 ) -> Rays {
     let Some(start) = emitter.emit(scene, stream) else { return Rays::default() };
-    let mut tracer = Tracer { scene, camera, flight: None, rays: Rays::default(), splat };
+    let mut tracer = Tracer { scene, camera, flight: None, rays: Rays::default(), splat: &mut splat };
     walk(scene, start, Roulette::Analog, None, stream, &mut tracer);
     tracer.rays
 }
 
-struct Tracer<'a, F: FnMut(Splat)> {
+struct Tracer<'a> {
     scene: &'a Scene,
     camera: &'a Camera,
     /// The distances on the present flight that equal angles choose from.
     flight: Option<EqualAngles>,
     rays: Rays,
-    splat: F,
+    splat: &'a mut dyn FnMut(Splat),
 }
 
 /// A scattering as the camera sees it.
@@ -70,7 +70,7 @@ struct Event {
     kind: Flags,
 }
 
-impl<F: FnMut(Splat)> Tracer<'_, F> {
+impl Tracer<'_> {
     /// Sends `weight` to the camera, of which `scattered` is the fraction that leaves into a direction [1/sr].
     fn connect(
         &mut self,
@@ -133,7 +133,7 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
     }
 }
 
-impl<F: FnMut(Splat)> Visitor for Tracer<'_, F> {
+impl Visitor for Tracer<'_> {
     const LOOKS_AHEAD: bool = false;
 
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {

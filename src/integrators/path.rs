@@ -60,11 +60,14 @@ pub struct Guides<'a> {
     pub directions: Option<&'a Directions>,
 }
 
-/// What reaches a path's origin, split by the caller: called with the order, the class and the contribution.
-pub(super) struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
+/// What is called with the order, the class and the contribution of what reaches a path's origin.
+pub(super) type Collect<'a> = dyn FnMut(u32, Layer, Spectrum) + 'a;
+
+/// What reaches a path's origin, split by the caller.
+pub(super) struct PathVisitor<'a> {
     scene: &'a Scene,
     orders: Orders,
-    collect: F,
+    collect: &'a mut Collect<'a>,
     rays: Rays,
     /// What the path's first scattering was.
     first: Flags,
@@ -80,8 +83,8 @@ pub(super) struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     joined_above: Option<[u32; 2]>,
 }
 
-impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
-    pub(super) fn new(scene: &'a Scene, orders: Orders, rays: Rays, collect: F) -> Self {
+impl<'a> PathVisitor<'a> {
+    pub(super) fn new(scene: &'a Scene, orders: Orders, rays: Rays, collect: &'a mut Collect<'a>) -> Self {
         PathVisitor {
             scene,
             orders,
@@ -291,7 +294,7 @@ fn flight_pdf(scene: &Scene, walker: &Walker, (t, medium): (f64, &Medium), ray: 
     }
 }
 
-impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
+impl Visitor for PathVisitor<'_> {
     fn guided(&self) -> Option<Guided<'_>> {
         self.guided
     }
@@ -520,20 +523,15 @@ pub fn classes(
     interior: usize,
     orders: Orders,
     stream: &mut Stream,
-    collect: impl FnMut(u32, Layer, Spectrum),
+    mut collect: impl FnMut(u32, Layer, Spectrum),
 ) -> Rays {
-    let visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
+    let visitor = PathVisitor::new(scene, orders, Rays::default(), &mut collect);
     let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
     follow(visitor, start, Guides::default(), stream)
 }
 
 /// Follows a path, and all that is split off it. Returns the work.
-fn follow<'a, F: FnMut(u32, Layer, Spectrum)>(
-    mut visitor: PathVisitor<'a, F>,
-    start: Walker,
-    guides: Guides<'a>,
-    stream: &mut Stream,
-) -> Rays {
+fn follow<'a>(mut visitor: PathVisitor<'a>, start: Walker, guides: Guides<'a>, stream: &mut Stream) -> Rays {
     let (scene, limit) = (visitor.scene, visitor.orders.max);
     // Roulette compares with the weight that a walk started with; windows take its place.
     let roulette =
@@ -568,9 +566,9 @@ pub fn guided_classes(
     orders: Orders,
     guides: Guides<'_>,
     stream: &mut Stream,
-    collect: impl FnMut(u32, Layer, Spectrum),
+    mut collect: impl FnMut(u32, Layer, Spectrum),
 ) -> Rays {
-    let visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
+    let visitor = PathVisitor::new(scene, orders, Rays::default(), &mut collect);
     let start = Walker { interior, ..Walker::new(ray, Spectrum::ONE) };
     follow(visitor, start, guides, stream)
 }
@@ -602,7 +600,8 @@ pub fn fluence(
     let lobe = guides.directions.and_then(|directions| directions.in_medium(position));
     let rays = aimed_fluence(scene, (position, lobe), orders, stream, &mut collect);
     let start = anywhere(scene, (position, lobe), stream);
-    let visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
+    let mut collect = |order, _: Layer, value| collect(order, value);
+    let visitor = PathVisitor::new(scene, orders, rays, &mut collect);
     follow(visitor, start, guides, stream)
 }
 

@@ -235,22 +235,22 @@ fn radiance(
             let across = |map: &BeamMap| {
                 let (of_beams, of) = (estimator.of_beams()?, (segment.medium, medium));
                 Some(match estimator.beam_blur {
-                    BeamBlur::OneD => of_beams.radiance(map, way, of, &boundary, passed).value,
-                    BeamBlur::TwoD => of_beams.radiance_in_2d(map, way, of, &boundary, passed).value,
+                    BeamBlur::OneD => of_beams.radiance(map, way, of, &boundary, &passed).value,
+                    BeamBlur::TwoD => of_beams.radiance_in_2d(map, way, of, &boundary, &passed).value,
                     BeamBlur::ThreeD => Spectrum::grey(f64::NAN),
                 })
             };
             let value = match map {
                 AskedMap::Points(map, radii) => estimator.of_rays().map(|of_rays| match radii {
                     Some(radii) => {
-                        of_rays.radiance_by_radii((map, radii), way, medium, &boundary, passed).value
+                        of_rays.radiance_by_radii((map, radii), way, medium, &boundary, &passed).value
                     }
                     None => of_rays.radiance(map, way, medium, &boundary, &passage).value,
                 }),
                 AskedMap::Beams(map) => across(map),
                 AskedMap::Planes(planes, direct) => {
                     let of_planes =
-                        |map| PlaneEstimator.radiance(map, way, (scene, segment.medium), passed).value;
+                        |map| PlaneEstimator.radiance(map, way, (scene, segment.medium), &passed).value;
                     let once = direct.and_then(across);
                     Some(planes.map_or(Spectrum::ZERO, of_planes) + once.unwrap_or(Spectrum::ZERO))
                 }

@@ -42,7 +42,7 @@ pub fn own_radii_by_hand() {
         let radii = map.radii(k, cap);
         let read = reading(kernel, cap);
         let of = (&map, &radii);
-        let estimate = read.radiance_by_radii(of, (&ray, span), &even, &Boundary::UNKNOWN, beer);
+        let estimate = read.radiance_by_radii(of, (&ray, span), &even, &Boundary::UNKNOWN, &beer);
         let found = estimate.value[0];
         assert!((found - expected).abs() <= 1e-6 * expected, "{kernel:?} k={k} cap {cap}: {found}");
         assert_eq!(estimate.found, usize::from(expected > 0.0), "k={k} cap {cap}");

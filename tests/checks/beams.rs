@@ -35,7 +35,7 @@ fn read(map: &BeamMap, kernel: Kernel, ray: Ray, g: f64) -> f64 {
     let span = Interval { start: 0.0, end: 4.0 };
     let beer = |t: f64| Spectrum::grey(exp(-t));
     let of = (0, &medium);
-    reading(kernel, 0.1).radiance(map, (&ray, span), of, &Boundary::UNKNOWN, beer).value[0]
+    reading(kernel, 0.1).radiance(map, (&ray, span), of, &Boundary::UNKNOWN, &beer).value[0]
 }
 
 /// One beam and one ray across it, square and aslant: products of six factors, by hand.
@@ -66,7 +66,7 @@ pub fn one_beam_by_hand() {
             (&square, span),
             of,
             &Boundary::UNKNOWN,
-            all,
+            &all,
         );
         assert_eq!((estimate.value, estimate.found), (Spectrum::ZERO, 0));
     }

@@ -44,7 +44,7 @@ fn scene(at: DVec3, regions: Vec<Region>, walls: Vec<Rectangle>) -> Scene {
 
 fn read(scene: &Scene, map: &PlaneMap, ray: &Ray, end: f64) -> f64 {
     let span = Interval { start: 0.0, end };
-    PlaneEstimator.radiance(map, (ray, span), (scene, 0), |t| Spectrum::grey(exp(-t))).value[0]
+    PlaneEstimator.radiance(map, (ray, span), (scene, 0), &|t| Spectrum::grey(exp(-t))).value[0]
 }
 
 /// One plane and one ray through it, near and far from the origin: a product of eight factors, by hand. What is beyond a leg or the

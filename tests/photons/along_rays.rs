@@ -44,20 +44,20 @@ fn one_photon_by_hand() {
     for (kernel, expected) in
         [(Kernel::Uniform, 0.05579179), (Kernel::Epanechnikov, 0.08368769), (Kernel::Biweight, 0.09414865)]
     {
-        let estimate = reading(kernel, 0.1).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, beer);
+        let estimate = reading(kernel, 0.1).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, &beer);
         assert_eq!((estimate.found, estimate.rejected), (1, 0));
         assert!((estimate.value[0] / expected - 1.0).abs() < 3e-7, "{kernel:?}: {}", estimate.value[0]);
         // Beyond the radius, and behind the end.
-        let thin = reading(kernel, 0.0499).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, beer);
+        let thin = reading(kernel, 0.0499).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, &beer);
         assert_eq!(thin.found, 0);
         let short = Interval { end: 2.49, ..span };
-        let short = reading(kernel, 0.1).radiance(&map, (&ray, short), &even, &Boundary::UNKNOWN, beer);
+        let short = reading(kernel, 0.1).radiance(&map, (&ray, short), &even, &Boundary::UNKNOWN, &beer);
         assert_eq!(short.found, 0);
     }
     // Extinction .4 + .2 s along the ray: what passes has a depth of 1.625.
     let passed = |t: f64| Spectrum::grey(exp(-(0.4 * t + 0.1 * t * t)));
     let estimate =
-        reading(Kernel::Uniform, 0.1).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, passed);
+        reading(Kernel::Uniform, 0.1).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, &passed);
     assert!((estimate.value[0] / 0.13383755 - 1.0).abs() < 3e-7);
 }
 
@@ -170,7 +170,7 @@ fn fields_are_blurred_across_the_ray() {
             for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
                 let reading = reading(kernel, radius);
                 let all = |_| Spectrum::ONE;
-                let estimate = reading.radiance(&map, (ray, *span), &even, &Boundary::UNKNOWN, all);
+                let estimate = reading.radiance(&map, (ray, *span), &even, &Boundary::UNKNOWN, &all);
                 moments.push(estimate.value[0]);
             }
         }
@@ -211,7 +211,7 @@ fn photons_behind_walls_do_not_count() {
         (known.about(&walls), (|p: DVec3| p.x > 0.6 && p.z < 0.5) as fn(DVec3) -> bool),
         (known.among(&other), |p: DVec3| p.y > 0.6),
     ] {
-        let estimate = reading.radiance(&map, (&ray, span), &even, &boundary, |_| Spectrum::ONE);
+        let estimate = reading.radiance(&map, (&ray, span), &even, &boundary, &|_| Spectrum::ONE);
         let near = |p: &&Photon| (p.position - DVec3::new(0.5, 0.5, p.position.z)).length() < 0.3;
         let lost = photons.iter().filter(near).filter(|p| is_lost(p.position)).count();
         let all = photons.iter().filter(near).count();
@@ -236,7 +236,7 @@ fn a_uniform_source_comes_out_right_beside_walls() {
     let map = synthetic.map(Number::Exact(10_000), 12, 999).unwrap();
     for radius in [3.0, 1e3, 1e6] {
         let reading = RayEstimator { is_clipped: true, ..reading(Kernel::Uniform, radius) };
-        let found = reading.radiance(&map, (&ray, span), &even, &known, |_| Spectrum::ONE).value[0];
+        let found = reading.radiance(&map, (&ray, span), &even, &known, &|_| Spectrum::ONE).value[0];
         assert!((found * FOUR_PI / span.length() - 1.0).abs() < 0.1, "{radius}: {found}");
     }
     let sheet = |x: f64| Rectangle::new(DVec3::new(x, 0.0, 0.1), DVec3::Y, DVec3::Z * 0.7).unwrap();
@@ -250,7 +250,7 @@ fn a_uniform_source_comes_out_right_beside_walls() {
             for (is_clipped, moments) in [true, false].into_iter().zip(&mut moments) {
                 for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
                     let reading = RayEstimator { is_clipped, ..reading(kernel, 0.2) };
-                    let estimate = reading.radiance(&map, (&ray, span), &even, &boundary, |_| Spectrum::ONE);
+                    let estimate = reading.radiance(&map, (&ray, span), &even, &boundary, &|_| Spectrum::ONE);
                     moments.push(estimate.value[0]);
                 }
             }
@@ -315,7 +315,7 @@ fn what_is_thinner_than_the_radius_is_no_darker() {
                 RayEstimator { is_clipped: true, ..reading(Kernel::ALL[replicate as usize % 5], 0.2) };
             let passage = Passage::new(&even, &ray, span, &mut stream);
             let rows = reading.radiance(&map, (&ray, span), &even, &boundary, &passage);
-            let single = reading.radiance(&map, (&ray, span), &even, &boundary, |t| passage.to(t));
+            let single = reading.radiance(&map, (&ray, span), &even, &boundary, &|t| passage.to(t));
             moments[0].push(rows.value[0]);
             moments[1].push(single.value[0]);
         }
@@ -380,7 +380,7 @@ fn rows_are_read_as_photons_are_one_by_one() {
                 let radius = [0.02, 0.1, 0.3][trial % 3];
                 let reading = RayEstimator { is_clipped, ..reading(kernel, radius) };
                 let rows = reading.radiance(&map, (&ray, span), &medium, boundary, &passage);
-                let single = reading.radiance(&map, (&ray, span), &medium, boundary, |t| passage.to(t));
+                let single = reading.radiance(&map, (&ray, span), &medium, boundary, &|t| passage.to(t));
                 read += rows.found;
                 by_rows += usize::from(rows.value != single.value);
                 let what = format!("{trial} {which} {kernel:?} {is_clipped}");
@@ -500,8 +500,9 @@ fn fields_are_blurred_by_the_radius_at_each_photon() {
             let read = |ray: &Ray| {
                 let of = (&map, &radii);
                 let all = |_| Spectrum::ONE;
-                reading(*kernel, cap).radiance_by_radii(of, (ray, span), &even, &Boundary::UNKNOWN, all).value
-                    [0]
+                reading(*kernel, cap)
+                    .radiance_by_radii(of, (ray, span), &even, &Boundary::UNKNOWN, &all)
+                    .value[0]
             };
             moments.push(rays.iter().map(read).sum::<f64>() / rays.len() as f64);
         }
@@ -599,8 +600,8 @@ fn shares_near_walls_are_of_each_radius() {
                 let fixed = RayEstimator { is_clipped, ..reading(kernel, 0.1) };
                 let own = RayEstimator { is_clipped, ..reading(kernel, 0.25) };
                 let all = |_| Spectrum::ONE;
-                let expected = fixed.radiance(&map, (&ray, span), &even, &boundary, all);
-                let found = own.radiance_by_radii((&map, &radii), (&ray, span), &even, &boundary, all);
+                let expected = fixed.radiance(&map, (&ray, span), &even, &boundary, &all);
+                let found = own.radiance_by_radii((&map, &radii), (&ray, span), &even, &boundary, &all);
                 assert!(expected.found > 4 && found.found == expected.found, "{kernel:?}");
                 let ratio = found.value[0] / expected.value[0];
                 assert!((ratio - 1.0).abs() < 1e-5, "{kernel:?} {is_clipped}: {ratio}");
@@ -638,7 +639,7 @@ fn copies_of_a_cell_have_their_radii() {
                 (&ray, span),
                 &even,
                 &Boundary::UNKNOWN,
-                |_| Spectrum::ONE,
+                &|_| Spectrum::ONE,
             )
         };
         let [edge, middle] = [read((&maps[0], DVec3::ZERO)), read((&maps[1], half))];

@@ -40,7 +40,7 @@ fn in_2d(map: &BeamMap, kernel: Kernel, ray: Ray, g: f64) -> f64 {
     let span = Interval { start: 0.0, end: 4.0 };
     let beer = |t: f64| Spectrum::grey(exp(-t));
     let of = (0, &medium);
-    reading(kernel, 0.1).radiance_in_2d(map, (&ray, span), of, &Boundary::UNKNOWN, beer).value[0]
+    reading(kernel, 0.1).radiance_in_2d(map, (&ray, span), of, &Boundary::UNKNOWN, &beer).value[0]
 }
 
 /// One beam exactly along a ray, with it and against it, drawn and to its end, in narrow peaks too, near and far from the origin:
@@ -456,7 +456,7 @@ fn variance_in_two_dimensions() {
         });
         let map = map(beams.collect());
         let all = |_| Spectrum::ONE;
-        let value = reading.radiance_in_2d(&map, (&ray, span), (0, &even), &Boundary::UNKNOWN, all).value[0];
+        let value = reading.radiance_in_2d(&map, (&ray, span), (0, &even), &Boundary::UNKNOWN, &all).value[0];
         moments.push(value);
         squares += value * value;
     }
@@ -516,7 +516,7 @@ fn uniform_fields_come_out_right_beside_walls() {
             let radius = Positive::new("the radius", radius).unwrap();
             let reading = BeamEstimator { kernel: Kernel::Uniform, radius, is_clipped };
             let all = |_| Spectrum::ONE;
-            discs[n].push(reading.radiance_in_2d(&map, (&ray, span), (0, &even), &boundary, all).value[0]);
+            discs[n].push(reading.radiance_in_2d(&map, (&ray, span), (0, &even), &boundary, &all).value[0]);
         }
     }
     let fluence = f64::from(count) / (4.0 * size * size);

@@ -269,7 +269,7 @@ fn variance_is_the_predicted_one() {
         for ((kernel, radius), moments) in readings.iter().zip(&mut moments) {
             let reading = reading(*kernel, *radius);
             let all = |_| Spectrum::ONE;
-            moments.push(reading.radiance(&map, (&ray, span), (0, &even), &Boundary::UNKNOWN, all).value[0]);
+            moments.push(reading.radiance(&map, (&ray, span), (0, &even), &Boundary::UNKNOWN, &all).value[0]);
         }
     }
     // Beams a square across their direction.
@@ -308,7 +308,7 @@ fn a_point_light_beside_a_ray() {
         for ((kernel, radius, _), moments) in cases.iter().zip(&mut moments) {
             let reading = reading(*kernel, *radius);
             let all = |_| Spectrum::ONE;
-            moments.push(reading.radiance(&map, (&ray, span), (0, &even), &Boundary::UNKNOWN, all).value[0]);
+            moments.push(reading.radiance(&map, (&ray, span), (0, &even), &Boundary::UNKNOWN, &all).value[0]);
         }
     }
     // Of an endless ray but for the angle that its ends leave.
@@ -350,7 +350,7 @@ fn a_uniform_field_comes_out_right_beside_walls() {
                 for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
                     let reading = BeamEstimator { is_clipped, ..reading(kernel, 0.2) };
                     let way = (&ray, span);
-                    let estimate = reading.radiance(&map, way, (0, &even), boundary, |_| Spectrum::ONE);
+                    let estimate = reading.radiance(&map, way, (0, &even), boundary, &|_| Spectrum::ONE);
                     moments.push(estimate.value[0]);
                 }
             }

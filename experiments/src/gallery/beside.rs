@@ -143,9 +143,11 @@ fn enough(wanted: u64, shown: u64, budget: u64) -> u64 {
 /// Samples a pixel of a pass of the reference that the comparison needs: nine in ten of the blocks that are not masked are to have the
 /// standard error that is wanted.
 fn chosen(large: &Cache, masked: &[bool]) -> anyhow::Result<u64> {
-    let grid = large.studio.grid();
+    let (grid, by_light) = (large.studio.grid(), large.studio.picture.by_light);
     let passes = (0..PILOT)
-        .map(|n| Ok(grid.reduced(&large.reference(&format!("pilot-{n}"), 1, FIRST.1 + n)?.scattered())))
+        .map(|n| {
+            Ok(grid.reduced(&large.reference(&format!("pilot-{n}"), by_light, 1, FIRST.1 + n)?.scattered()))
+        })
         .collect::<anyhow::Result<Vec<Replicate>>>()?;
     let one = spread(grid.halved(), &passes, masked);
     let samples = (one / WANTED) * (one / WANTED) / COMPARED as f64;
@@ -164,11 +166,11 @@ struct Reference {
 }
 
 fn reference(large: &Cache, samples: u64, pictures: &[&CachedRender]) -> anyhow::Result<Reference> {
-    let grid = large.studio.grid();
+    let (grid, by_light) = (large.studio.grid(), large.studio.picture.by_light);
     let (mut passes, mut seconds) = (Vec::new(), 0.0);
     let mut shown = vec![Spectrum::ZERO; grid.pixels()];
     for n in 0..COMPARED {
-        let kept = large.reference(&format!("reference-{n:03}"), samples, FIRST.0 + n)?;
+        let kept = large.reference(&format!("reference-{n:03}"), by_light, samples, FIRST.0 + n)?;
         seconds += kept.facts.seconds;
         shown.iter_mut().zip(&kept.total).for_each(|(sum, x)| *sum += *x * (1.0 / COMPARED as f64));
         passes.push(kept.scattered());

@@ -61,9 +61,14 @@ impl Cache<'_> {
     }
 
     /// A pass of the reference.
-    pub fn reference(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<CachedRender> {
+    pub fn reference(
+        &self,
+        file: &str,
+        by_light: ByLight,
+        samples: u64,
+        replicate: u64,
+    ) -> anyhow::Result<CachedRender> {
         let (s, work) = (self.studio, self.studio.work(samples));
-        let by_light = s.picture.by_light;
         let words = s.unbiased_words(by_light, samples, replicate);
         self.get(file, &words, work, |bar| {
             Ok(s.unbiased(by_light, samples, replicate, bar)?.without_layers())

@@ -1,9 +1,11 @@
-//! Pictures at the size of print, of what the page has compared: the photon map, its rival in the same time, the reference.
+//! Pictures at the size of print, of what the page has compared: the photon map, its medium read along rays, the rival in the same
+//! time, the reference.
 
 use super::beside::{FIRST, rivals};
 use super::cache::Cache;
 use super::develop::{develop, tone};
 use super::keep::RenderRecord;
+use super::lines::Stored;
 use super::pictures::Picture;
 use super::settings::Settings;
 use super::shown::PageEntry;
@@ -16,25 +18,27 @@ use turbid::Spectrum;
 
 /// Columns of pixels.
 const WIDTH: f64 = 960.0;
-/// Passes of the reference: a stopped run loses a part of one.
-const PASSES: u64 = 16;
+/// Samples of the reference for one of the rival's, in passes of which a stopped run loses a part of one: half of its error is left.
+const PASSES: u64 = 4;
 
-/// How three pictures were made.
+/// How the pictures of a scene were made.
 #[derive(Debug, Clone, Serialize)]
 pub struct Printed {
     /// Columns and rows of pixels.
     size: (usize, usize),
     /// The photon mapper's picture.
     ours: RenderRecord,
+    /// The same with its medium read along whole rays, by what is stored.
+    along: Vec<(&'static str, RenderRecord)>,
     /// The rival's name.
     rival: String,
     /// Its picture in the same time.
     equal: RenderRecord,
-    /// Samples per pixel and CPU seconds of the reference.
+    /// Samples per pixel and CPU seconds of the reference, by the rival's method.
     reference: (u64, f64),
 }
 
-/// Makes the three pictures of one scene.
+/// Makes the pictures of one scene.
 ///
 /// # Arguments
 /// `page` what the gallery's page has found for it; `folder` of the pictures
@@ -57,30 +61,38 @@ pub fn print(
         .into_iter()
         .find(|method| method.name() == compared.rival)
         .ok_or_else(|| anyhow!("the page's rival, {}, is none that the scene permits", compared.rival))?;
+    let grid = studio.grid();
+    let write = |kind: &str, radiance: &[Spectrum]| {
+        let file = folder.join(format!("{}-{kind}.png", picture.name));
+        develop(grid, radiance, tone(picture.exposure)).write(&file)
+    };
     let ours = cache.photons("photons", picture.samples, 0)?;
+    write("photons", &ours.total)?;
+    let mut along = Vec::new();
+    for of in picture.lines.iter().flat_map(|lines| Stored::ALL.map(|stored| (lines, stored))) {
+        let render = cache.lines(of, &ours.facts)?;
+        write(of.1.kind(), &render.total)?;
+        along.push((of.1.name(), render.facts));
+    }
     let equal = cache.rival("equal", rival, ours.facts.seconds)?;
-    // As many samples per pixel as the page's reference has, and never fewer than what stands beside it.
-    let wanted = page.reference.map_or(0, |(samples, _)| samples).max(equal.facts.samples + 1);
-    let samples = wanted.div_ceil(PASSES);
-    let mut reference = vec![Spectrum::ZERO; studio.grid().pixels()];
+    write("rival", &equal.total)?;
+    let mut reference = vec![Spectrum::ZERO; grid.pixels()];
     let mut seconds = 0.0;
     for n in 0..PASSES {
-        let pass = cache.reference(&format!("reference-{n:02}"), samples, FIRST.0 + n)?;
+        let pass = cache.reference(&format!("reference-{n:02}"), rival, equal.facts.samples, FIRST.0 + n)?;
         seconds += pass.facts.seconds;
         reference.iter_mut().zip(&pass.total).for_each(|(sum, x)| *sum += *x * (1.0 / PASSES as f64));
     }
-    let grid = studio.grid();
-    for (kind, radiance) in [("photons", &ours.total), ("rival", &equal.total), ("reference", &reference)] {
-        let file = folder.join(format!("{}-{kind}.png", picture.name));
-        develop(grid, radiance, tone(picture.exposure)).write(&file)?;
-    }
-    let all = ours.facts.seconds + equal.facts.seconds + seconds;
+    write("reference", &reference)?;
+    let beside = along.iter().map(|(_, facts)| facts.seconds).sum::<f64>();
+    let all = ours.facts.seconds + beside + equal.facts.seconds + seconds;
     say(&format!("{}: {} of CPU time", picture.name, duration(all)));
     Ok(Printed {
         size: (grid.width, grid.height),
         ours: ours.facts,
+        along,
         rival: compared.rival.clone(),
+        reference: (equal.facts.samples * PASSES, seconds),
         equal: equal.facts,
-        reference: (samples * PASSES, seconds),
     })
 }

@@ -5,6 +5,7 @@ use super::line::{Line, Places};
 use super::series::Orders;
 use libm::{exp, expm1, log1p};
 use turbid::medium::Bound;
+use turbid_analytic::power_series;
 use turbid_analytic::quadrature::GaussLegendre;
 
 /// What is expected of one estimate, relative to the transmittance T.
@@ -28,9 +29,6 @@ impl Expected {
         self.squared * self.look_ups
     }
 }
-
-/// Highest order of a series that counts: the chance to come here is 1e-6, and terms fall by factorials.
-const ORDERS: usize = 12;
 
 /// What theory says of an estimator.
 pub fn expected(line: &Line, estimator: &Estimator) -> Expected {
@@ -215,71 +213,15 @@ impl Nodes {
     }
 }
 
-/// The coefficients of s^k t^l times a further factor 1 + a s + b t + c s t.
-fn times(table: &mut [[f64; ORDERS + 1]], most: usize, a: f64, b: f64, c: f64) {
-    for k in (0..=most).rev() {
-        for l in (0..=most).rev() {
-            let before = |i: usize, j: usize| if k >= i && l >= j { table[k - i][l - j] } else { 0.0 };
-            table[k][l] = before(0, 0) + a * before(1, 0) + b * before(0, 1) + c * before(1, 1);
-        }
-    }
-}
-
-/// Sums of products of k differences from one pivot and l from another have the generating function of independent factors:
-/// with y = pivot - Y, E prod (1 + s y)(1 + t y') = (1 + s E y + t E y' + s t E y y')^count; where a pivot is one of the
-/// other's estimates, its factor is known.
+/// The second moment of combs about one of several, by [`power_series`].
 fn combs(line: &Line, depth: f64, orders: Orders, places: &Places, teeth: u32) -> Expected {
     let look_ups = look_ups(places, teeth) * (1.0 + orders.mean());
     if places.is_empty() {
         return Expected::unbiased(0.0, 0.0);
     }
     let nodes = Nodes::new(line, depth, places, teeth);
-    let square = nodes.mean(|y| y * y);
-    // Weight of products of k of n: 1 over their number, k! and the chance.
-    let weight =
-        |n: usize, k: usize| (0..k).map(|i| 1.0 / (n - i) as f64).product::<f64>() / orders.reaches(k);
-    let weights: Vec<Vec<f64>> = (0..=ORDERS).map(|n| (0..=n).map(|k| weight(n, k)).collect()).collect();
-    let combined = |n: usize, table: &[[f64; ORDERS + 1]]| {
-        let mut sum = 0.0;
-        for k in 0..=n {
-            for l in 0..=n {
-                sum += weights[n][k] * weights[n][l] * table[k][l];
-            }
-        }
-        sum
-    };
-    let empty = || {
-        let mut table = [[0.0; ORDERS + 1]; ORDERS + 1];
-        table[0][0] = 1.0;
-        table
-    };
-    let chance = |n: usize| orders.reaches(n) - orders.reaches(n + 1);
-    let mut total = 0.0;
-    for (i, &(p, w)) in nodes.0.iter().enumerate() {
-        // The same pivot twice.
-        let mut table = empty();
-        for n in 0..=ORDERS {
-            let part = combined(n, &table) * exp(-2.0 * p) * w;
-            total += chance(n) * part / (n + 1) as f64;
-            if n < ORDERS {
-                times(&mut table, n + 1, p, p, square + p * p);
-            }
-        }
-        // Two pivots, each among the other's estimates.
-        for (j, &(q, v)) in nodes.0[..=i].iter().enumerate() {
-            let both = if i == j { w * v } else { 2.0 * w * v };
-            let mut table = empty();
-            times(&mut table, 1, p - q, q - p, -(p - q) * (p - q));
-            for n in 1..=ORDERS {
-                let part = combined(n, &table) * exp(-p - q) * both;
-                total += chance(n) * part * n as f64 / (n + 1) as f64;
-                if n < ORDERS {
-                    times(&mut table, n + 1, p, q, square + p * q);
-                }
-            }
-        }
-    }
+    let total = power_series::second_moment(&nodes.0, |k| orders.reaches(k));
     // Higher orders count as if they were exact; combs that all say the same leave a rounding.
-    let counted = 1.0 - orders.reaches(ORDERS + 1);
+    let counted = 1.0 - orders.reaches(power_series::ORDERS + 1);
     Expected::unbiased((total - counted).max(0.0), look_ups)
 }

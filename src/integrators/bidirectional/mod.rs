@@ -16,7 +16,7 @@ mod weights;
 pub use pinhole::Pinhole;
 
 use super::light_tracing::Splat;
-use super::path::{PathVisitor, ROULETTE, aimed_fluence, anywhere, next_event};
+use super::path::{Collect, PathVisitor, ROULETTE, aimed_fluence, anywhere, next_event};
 use super::{Layer, Layers, Rays};
 use crate::Spectrum;
 use crate::error::{Error, Result};
@@ -57,10 +57,10 @@ pub fn classes(
     interior: usize,
     orders: Orders,
     stream: &mut Stream,
-    collect: impl FnMut(u32, Layer, Spectrum),
+    mut collect: impl FnMut(u32, Layer, Spectrum),
 ) -> Rays {
     let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
-    follow((scene, None), start, orders, Rays::default(), stream, collect)
+    follow((scene, None), start, orders, Rays::default(), stream, &mut collect)
 }
 
 /// One sample of the fluence at a point [W/L^2], by order, in a uniform direction and in those that [`super::fluence`] aims at.
@@ -74,7 +74,7 @@ pub fn fluence(
 ) -> Rays {
     let rays = aimed_fluence(scene, (position, None), orders, stream, &mut collect);
     let start = anywhere(scene, (position, None), stream);
-    follow((scene, None), start, orders, rays, stream, |order, _, value| collect(order, value))
+    follow((scene, None), start, orders, rays, stream, &mut |order, _, value| collect(order, value))
 }
 
 /// A subpath of light, and a path that is connected to it.
@@ -84,7 +84,7 @@ fn follow(
     orders: Orders,
     mut rays: Rays,
     stream: &mut Stream,
-    collect: impl FnMut(u32, Layer, Spectrum),
+    collect: &mut Collect<'_>,
 ) -> Rays {
     let sources = Sources::new(scene);
     // The last scattering is the eye's.
@@ -128,9 +128,8 @@ pub fn seen(
     let mut layers = Layers::ZERO;
     let start = Walker { interior, ..Walker::new(ray, Spectrum::ONE) };
     let orders = Orders::ALL;
-    let rays = follow((scene, Some(pinhole)), start, orders, Rays::default(), stream, |_, layer, value| {
-        layers[layer] += value
-    });
+    let mut collect = |_, layer, value| layers[layer] += value;
+    let rays = follow((scene, Some(pinhole)), start, orders, Rays::default(), stream, &mut collect);
     (layers, rays)
 }
 
@@ -165,7 +164,7 @@ pub fn splats(scene: &Scene, pinhole: &Pinhole, stream: &mut Stream, mut splat: 
 }
 
 /// The eye's subpath: it connects each of its vertices as it comes to it, and remembers the last one.
-struct Eye<'a, F: FnMut(u32, Layer, Spectrum)> {
+struct Eye<'a> {
     scene: &'a Scene,
     /// The camera that photons are connected to as well, if they are.
     pinhole: Option<&'a Pinhole<'a>>,
@@ -173,14 +172,14 @@ struct Eye<'a, F: FnMut(u32, Layer, Spectrum)> {
     /// The subpath of light, nearest to the light first.
     light: Vec<Vertex<'a>>,
     /// What paths collect beside it.
-    path: PathVisitor<'a, F>,
+    path: PathVisitor<'a>,
     last: Option<Vertex<'a>>,
     /// Direction in which it left its last vertex, and whether it met a specular surface since.
     leaving: Option<DVec3>,
     is_specular: bool,
 }
 
-impl<'a, F: FnMut(u32, Layer, Spectrum)> Eye<'a, F> {
+impl<'a> Eye<'a> {
     /// The class of light of an order whose path has this vertex, by specular surfaces from the light or not.
     fn layer(&self, order: u32, vertex: &Vertex, is_by_specular: bool) -> Layer {
         let first = if vertex.order == 1 { vertex.kind() } else { self.path.first() };
@@ -292,7 +291,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> Eye<'a, F> {
     }
 }
 
-impl<'a, F: FnMut(u32, Layer, Spectrum)> Visitor for Eye<'a, F> {
+impl Visitor for Eye<'_> {
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         self.path.visit(walker, step, stream);
         match step {

@@ -136,7 +136,7 @@ impl Eye<'_, '_> {
             let way = (&walker.ray, span);
             let estimate = match &mapper.radii {
                 Some(radii) => {
-                    along.radiance_by_radii((map, radii), way, medium, &boundary, |t| passage.to(t))
+                    along.radiance_by_radii((map, radii), way, medium, &boundary, &|t| passage.to(t))
                 }
                 None => along.radiance(map, way, medium, &boundary, &passage),
             };
@@ -149,9 +149,9 @@ impl Eye<'_, '_> {
             let (way, of) = ((&walker.ray, span), (number, medium));
             let passed = |t: f64| passage.to(t);
             let estimate = match mapper.settings.volume.beam_blur {
-                BeamBlur::OneD => across.radiance(map, way, of, &boundary, passed),
+                BeamBlur::OneD => across.radiance(map, way, of, &boundary, &passed),
                 // A blur about places is refused where the mapper is checked.
-                BeamBlur::TwoD | BeamBlur::ThreeD => across.radiance_in_2d(map, way, of, &boundary, passed),
+                BeamBlur::TwoD | BeamBlur::ThreeD => across.radiance_in_2d(map, way, of, &boundary, &passed),
             };
             self.report.volume.add_along(across.radius, &estimate);
             self.layers.multiple += seen * estimate.value;

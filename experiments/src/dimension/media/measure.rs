@@ -140,12 +140,12 @@ impl Passes<'_> {
         let radius = Positive::new("the radius", radius)?;
         let strips = BeamEstimator { kernel: Kernel::Uniform, radius, is_clipped: self.medium.is_clipped() };
         let (medium, span) = ((0, self.scene.medium(0)), self.medium.span());
-        Ok(self.each(|ray| of(strips.radiance(map, (ray, span), medium, &self.boundary, passed))))
+        Ok(self.each(|ray| of(strips.radiance(map, (ray, span), medium, &self.boundary, &passed))))
     }
 
     fn along_planes(&self, map: &PlaneMap) -> Vec<Found> {
         let span = self.medium.span();
-        self.each(|ray| of(PlaneEstimator.radiance(map, (ray, span), (self.scene, 0), passed)))
+        self.each(|ray| of(PlaneEstimator.radiance(map, (ray, span), (self.scene, 0), &passed)))
     }
 }
 

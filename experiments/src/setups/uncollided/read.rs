@@ -63,7 +63,7 @@ pub fn along_points(points: &PhotonMap, scene: &Scene, ray: &Ray, radius: f64) -
     let radius = Positive::new("the radius", radius)?;
     let estimator = RayEstimator { kernel: Kernel::Uniform, radius, is_clipped: false };
     let medium = &scene.regions()[0].medium;
-    let estimate = estimator.radiance(points, (ray, SPAN), medium, &Boundary::UNKNOWN, |_| Spectrum::ONE);
+    let estimate = estimator.radiance(points, (ray, SPAN), medium, &Boundary::UNKNOWN, &|_| Spectrum::ONE);
     Ok(estimate.value[0] / whole() - 1.0)
 }
 
@@ -72,6 +72,7 @@ pub fn along_beams(beams: &BeamMap, scene: &Scene, ray: &Ray, radius: f64) -> an
     let radius = Positive::new("the radius", radius)?;
     let estimator = BeamEstimator { kernel: Kernel::Uniform, radius, is_clipped: false };
     let medium = &scene.regions()[0].medium;
-    let estimate = estimator.radiance(beams, (ray, SPAN), (0, medium), &Boundary::UNKNOWN, |_| Spectrum::ONE);
+    let estimate =
+        estimator.radiance(beams, (ray, SPAN), (0, medium), &Boundary::UNKNOWN, &|_| Spectrum::ONE);
     Ok(estimate.value[0] / whole() - 1.0)
 }
