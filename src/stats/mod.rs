@@ -12,6 +12,7 @@ mod interval;
 mod mean;
 mod moments;
 mod multiple;
+mod residuals;
 mod tail;
 
 pub use bootstrap::{Jackknife, bootstrap_interval, jackknife, jackknife_log, positive_interval};
@@ -27,6 +28,7 @@ pub use interval::{Interval, mean_interval, poisson_interval, wilson_interval};
 pub use mean::{MeanTest, POWER_QUANTILE, smallest_detectable_bias, t_test, z_test};
 pub use moments::Moments;
 pub use multiple::holm;
+pub use residuals::Residuals;
 pub use tail::Tail;
 
 /// False-alarm probability of one statistical assertion: 1000 of them stay below 1e-3 together.

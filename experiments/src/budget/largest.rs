@@ -12,7 +12,7 @@ use super::sets::{Group, distance, predicted};
 use crate::harness::Digest;
 use crate::prediction::Term;
 use turbid::rng::{Purpose, Stream};
-use turbid::stats::{Moments, normal_critical, student_p};
+use turbid::stats::{Moments, Residuals, normal_critical, student_p};
 use turbid::transport::in_parallel;
 
 /// The case farthest from its prediction.
@@ -43,11 +43,11 @@ pub struct Null {
 impl Null {
     /// Resamples the maps.
     pub fn new(groups: &[Group], seed: u64, resamples: usize) -> Self {
-        let tables: Vec<Residuals> = groups.iter().map(Residuals::of).collect();
+        let tables: Vec<Residuals> = groups.iter().map(residuals).collect();
         let name = Digest::of(b"budget/largest").word();
         let one = |resample: usize| {
             let mut stream = Stream::new(seed, Purpose::Resampling, name, resample as u64);
-            tables.iter().map(|table| table.resampled(&mut stream)).fold(1.0, f64::min)
+            tables.iter().map(|table| table.smallest_p(&mut stream)).fold(1.0, f64::min)
         };
         let mut smallest = in_parallel(resamples, one);
         smallest.sort_by(f64::total_cmp);
@@ -85,62 +85,9 @@ impl Null {
     }
 }
 
-/// The values of a group less their means, in standard deviations, and the numerical errors in standard errors.
-struct Residuals {
-    maps: usize,
-    entries: usize,
-    /// All entries of the first map, then of the next. Single precision leaves 1e-5 of a distance.
-    values: Vec<f32>,
-    errors: Vec<f32>,
-}
-
-impl Residuals {
-    fn of(group: &Group) -> Self {
-        let (maps, entries) = (group.maps, group.entries.len());
-        let mut values = vec![0.0; maps * entries];
-        let mut errors = vec![0.0; entries];
-        for (i, entry) in group.entries.iter().enumerate() {
-            let m: Moments = entry.maps.iter().collect();
-            // A case without spread stays at no distance.
-            let scale = if m.std_dev() > 0.0 { 1.0 / m.std_dev() } else { 0.0 };
-            for (map, value) in entry.maps.iter().enumerate() {
-                values[map * entries + i] = ((value - m.mean()) * scale) as f32;
-            }
-            errors[i] = (entry.error * scale * (maps as f64).sqrt()) as f32;
-        }
-        Residuals { maps, entries, values, errors }
-    }
-
-    /// The smallest p-value among the entries in one sample of the maps with replacement.
-    fn resampled(&self, stream: &mut Stream) -> f64 {
-        let mut times = vec![0u16; self.maps];
-        for _ in 0..self.maps {
-            times[stream.index(self.maps)] += 1;
-        }
-        let mut sums = vec![0.0f32; self.entries];
-        let mut squares = vec![0.0f32; self.entries];
-        for (row, &times) in self.values.chunks_exact(self.entries.max(1)).zip(&times) {
-            if times > 0 {
-                let times = f32::from(times);
-                for ((sum, square), &x) in sums.iter_mut().zip(&mut squares).zip(row) {
-                    let weighted = times * x;
-                    *sum += weighted;
-                    *square += weighted * x;
-                }
-            }
-        }
-        let count = self.maps as f32;
-        let mut largest = 0.0f32;
-        for ((sum, square), error) in sums.iter().zip(&squares).zip(&self.errors) {
-            let mean = sum / count;
-            // Variance of the mean, and of the numerical error, in the units of the values.
-            let variance = (square / count - mean * mean) / (count - 1.0) + error * error / count;
-            if variance > 0.0 {
-                largest = largest.max(mean * mean / variance);
-            }
-        }
-        student_p(f64::from(largest).sqrt(), self.maps as u64 - 1)
-    }
+/// The group's values, for resampling.
+fn residuals(group: &Group) -> Residuals {
+    Residuals::new(group.maps, group.entries.iter().map(|entry| (&entry.maps[..], entry.error)))
 }
 
 /// A two-sided p-value in deviations of a normal number.
@@ -185,7 +132,7 @@ mod tests {
     fn resamples_by_a_second_way() {
         let entries = made_up(6, &[(40, 5)], 0.0);
         let groups = groups(entries.iter()).unwrap().0;
-        let table = Residuals::of(&groups[0]);
+        let table = residuals(&groups[0]);
         for history in 0..50 {
             let mut stream = Stream::new(9, Purpose::Resampling, 0, history);
             let drawn: Vec<usize> = {
@@ -198,7 +145,7 @@ mod tests {
                 student_p(distance(m.mean(), m.std_error(), whole.mean(), entry.error), 39)
             };
             let expected = groups[0].entries.iter().map(one).fold(1.0, f64::min);
-            let found = table.resampled(&mut stream);
+            let found = table.smallest_p(&mut stream);
             // Single precision: 1e-6 of a deviation of at most 6, in the logarithm of p.
             assert!((found / expected - 1.0).abs() < 1e-3, "{found} for {expected}");
         }
