@@ -6,12 +6,12 @@ use std::path::Path;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_bias");
 
-/// A fiftieth of the photons, some ten seconds: every map of the real one is shot, every case predicted, gathered, judged and drawn; and
+/// A hundredth of the photons, some ten seconds: every map of the real one is shot, every case predicted, gathered, judged and drawn; and
 /// a quarter of the cells again, on other threads.
 #[test]
 fn the_same_results_on_one_thread_and_two_and_after_a_loss() {
     let folder = tempfile::tempdir().unwrap();
-    let one = run::same_on_threads_and_after_a_loss(PROGRAM, "0.02", folder.path());
+    let one = run::same_on_threads_and_after_a_loss(PROGRAM, "0.01", folder.path());
     assert!(run::figures(&one) >= 4);
     parameters_are_columns(&one.join("results.csv"));
 }

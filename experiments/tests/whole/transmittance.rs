@@ -4,12 +4,12 @@ use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_transmittance");
 
-/// A fifth of the estimates, some two seconds: the results do not depend on the threads, nor on lost cells, every case is judged and
+/// A tenth of the estimates, some two seconds: the results do not depend on the threads, nor on lost cells, every case is judged and
 /// drawn, and nothing is rejected.
 #[test]
-fn a_fifth_of_the_estimates() {
+fn a_tenth_of_the_estimates() {
     let folder = tempfile::tempdir().unwrap();
-    let one = run::same_on_threads_and_after_a_loss(PROGRAM, "0.2", folder.path());
+    let one = run::same_on_threads_and_after_a_loss(PROGRAM, "0.1", folder.path());
     assert_eq!(run::figures(&one), 3);
     assert!(!std::fs::read_to_string(one.join("claims.csv")).unwrap().contains(",rejected,"));
 }
