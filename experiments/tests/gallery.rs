@@ -78,13 +78,20 @@ fn the_commands_are_for_a_shell() {
 fn the_kept_page_shows_the_kept_numbers() {
     let kept = root().join("results/gallery");
     let folder = tempfile::tempdir().unwrap();
-    for picture in ALL {
-        let file = format!("{}.json", picture.name);
-        std::fs::copy(kept.join(&file), folder.path().join(&file)).unwrap();
+    for of in ["gallery", "print"] {
+        std::fs::create_dir(folder.path().join(of)).unwrap();
+        for picture in ALL {
+            let file = Path::new(of).join(format!("{}.json", picture.name));
+            // Not all pictures are printed.
+            if of == "gallery" || root().join("results").join(&file).exists() {
+                std::fs::copy(root().join("results").join(&file), folder.path().join(&file)).unwrap();
+            }
+        }
     }
+    let out = folder.path().join("gallery");
     let mut gallery = Command::new(env!("CARGO_BIN_EXE_gallery"));
-    gallery.args(["--page", "--out"]).arg(folder.path()).assert().success();
-    let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();
+    gallery.args(["--page", "--out"]).arg(&out).assert().success();
+    let page = std::fs::read_to_string(out.join("index.html")).unwrap();
     assert!(
         page == std::fs::read_to_string(kept.join("index.html")).unwrap(),
         "gallery --page writes another"
@@ -95,6 +102,10 @@ fn the_kept_page_shows_the_kept_numbers() {
         std::fs::read_dir(&kept).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
     let files: BTreeSet<String> = files.filter(|file| file.ends_with(".png")).collect();
     assert_eq!(shown, files.iter().map(String::as_str).collect());
+    let printed = page.split("href=\"../print/").skip(1).map(|rest| rest.split('"').next().unwrap());
+    for file in printed {
+        assert!(root().join("results/print").join(file).exists(), "{file}");
+    }
 }
 
 /// Pictures for print show what the page has compared; without a page there is nothing to show.

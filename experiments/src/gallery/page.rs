@@ -2,9 +2,11 @@
 //! elsewhere.
 
 use super::keep::{MapEstimates, RenderRecord};
+use super::lines::Stored;
 use super::pictures::{ALL, Picture};
 use super::plates::SCALE;
-use super::settings::Settings;
+use super::print::Printed;
+use super::settings::{FROM_PAGE, Settings};
 use super::shown::{Compared, PageEntry, Plate};
 use super::speed;
 use crate::harness::duration;
@@ -93,7 +95,7 @@ const RENDERS: [(&str, &str); 5] = [
 ];
 
 /// The page of all pictures that are there.
-pub fn page(shown: &[PageEntry], settings: &Settings) -> Markup {
+pub fn page(shown: &[PageEntry], printed: &[Printed], settings: &Settings) -> Markup {
     let entries: Vec<(&Picture, &PageEntry)> = ALL
         .iter()
         .filter_map(|picture| Some((picture, shown.iter().find(|s| s.name == picture.name)?)))
@@ -111,7 +113,9 @@ pub fn page(shown: &[PageEntry], settings: &Settings) -> Markup {
                 h1 { "The pictures of photon mapping in participating media, and what they are worth" }
                 ul.index { @for (picture, shown) in &entries { li { (thumbnail(picture, shown)) } } }
                 (method(settings))
-                @for (picture, shown) in &entries { (section(picture, shown)) }
+                @for (picture, shown) in &entries {
+                    (section(picture, shown, printed.iter().find(|printed| printed.name == picture.name)))
+                }
                 (speed::section(&speed::rows()))
                 script { (PreEscaped(SCRIPT)) }
             }
@@ -174,7 +178,7 @@ fn method(settings: &Settings) -> Markup {
     }
 }
 
-fn section(picture: &Picture, shown: &PageEntry) -> Markup {
+fn section(picture: &Picture, shown: &PageEntry, printed: Option<&Printed>) -> Markup {
     let of = |kind: &str| shown.plates.iter().find(|plate| plate.kind == kind);
     let renders: Vec<(&Plate, &str)> =
         RENDERS.iter().filter_map(|(kind, button)| Some((of(kind)?, *button))).collect();
@@ -193,8 +197,30 @@ fn section(picture: &Picture, shown: &PageEntry) -> Markup {
         @if let Some(compared) = &shown.compared { p.outcome { (winner(compared)) } }
         (numbers(picture, shown))
         div.plates { @for plate in others { (figure(plate, shown.size)) } }
+        @if let Some(printed) = printed { (links(picture, printed)) }
         p.soft { "The same picture as EXR, by layers:" }
         pre { (shown.command) }
+    }
+}
+
+/// Where the pictures at the size of print are, and how they were made.
+fn links(picture: &Picture, printed: &Printed) -> Markup {
+    let link = |kind: &str, text: &str| {
+        html! { a href=(format!("{FROM_PAGE}/{}-{kind}.png", picture.name)) { (text) } }
+    };
+    let told =
+        |facts: &RenderRecord| format!("{} samples per pixel, {}", facts.samples, duration(facts.seconds));
+    html! {
+        p.soft {
+            (printed.size.0) " pixels wide, in the same CPU time each: " (link("photons", "photon maps")) " (" (told(&printed.ours)) "), "
+            @for (kind, _) in &printed.along {
+                @if let Some(stored) = Stored::ALL.iter().find(|stored| stored.kind() == kind) {
+                    (link(kind, stored.name())) ", "
+                }
+            }
+            (link("rival", &printed.rival)) " (" (told(&printed.equal)) "); " (link("reference", "reference")) " (by the same method, "
+            (printed.reference.0) " samples per pixel, " (duration(printed.reference.1)) ")."
+        }
     }
 }
 

@@ -12,30 +12,34 @@ use super::shown::PageEntry;
 use super::studio::Studio;
 use crate::harness::{duration, say};
 use anyhow::{Context, anyhow};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use turbid::Spectrum;
 
 /// Columns of pixels.
 const WIDTH: f64 = 960.0;
+/// The page's samples a pixel for one of these: on the same paper are seven to fourteen times as many pixels.
+const FEWER: u64 = 4;
 /// Samples of the reference for one of the rival's, in passes of which a stopped run loses a part of one: half of its error is left.
 const PASSES: u64 = 4;
 
 /// How the pictures of a scene were made.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Printed {
+    /// The picture's name.
+    pub name: String,
     /// Columns and rows of pixels.
-    size: (usize, usize),
+    pub size: (usize, usize),
     /// The photon mapper's picture.
-    ours: RenderRecord,
-    /// The same with its medium read along whole rays, by what is stored.
-    along: Vec<(&'static str, RenderRecord)>,
+    pub ours: RenderRecord,
+    /// The same with its medium read along whole rays, by the name of the file.
+    pub along: Vec<(String, RenderRecord)>,
     /// The rival's name.
-    rival: String,
+    pub rival: String,
     /// Its picture in the same time.
-    equal: RenderRecord,
+    pub equal: RenderRecord,
     /// Samples per pixel and CPU seconds of the reference, by the rival's method.
-    reference: (u64, f64),
+    pub reference: (u64, f64),
 }
 
 /// Makes the pictures of one scene.
@@ -66,13 +70,13 @@ pub fn print(
         let file = folder.join(format!("{}-{kind}.png", picture.name));
         develop(grid, radiance, tone(picture.exposure)).write(&file)
     };
-    let ours = cache.photons("photons", picture.samples, 0)?;
+    let ours = cache.photons("photons", picture.samples.div_ceil(FEWER), 0)?;
     write("photons", &ours.total)?;
     let mut along = Vec::new();
     for of in picture.lines.iter().flat_map(|lines| Stored::ALL.map(|stored| (lines, stored))) {
         let render = cache.lines(of, &ours.facts)?;
         write(of.1.kind(), &render.total)?;
-        along.push((of.1.name(), render.facts));
+        along.push((of.1.kind().to_string(), render.facts));
     }
     let equal = cache.rival("equal", rival, ours.facts.seconds)?;
     write("rival", &equal.total)?;
@@ -88,6 +92,7 @@ pub fn print(
     let all = ours.facts.seconds + beside + equal.facts.seconds + seconds;
     say(&format!("{}: {} of CPU time", picture.name, duration(all)));
     Ok(Printed {
+        name: picture.name.to_string(),
         size: (grid.width, grid.height),
         ours: ours.facts,
         along,

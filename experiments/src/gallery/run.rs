@@ -4,9 +4,9 @@ use super::beside::beside;
 use super::cache::Cache;
 use super::pictures::{ALL, Picture};
 use super::plates::plates;
-use super::print::print;
+use super::print::{Printed, print};
 use super::recipe::command;
-use super::settings::{PAGE, Settings};
+use super::settings::{FROM_PAGE, PAGE, PRINT, Settings};
 use super::shown::PageEntry;
 use super::studio::Studio;
 use super::{assets, page};
@@ -15,6 +15,7 @@ use crate::harness::{
 };
 use anyhow::Context;
 use clap::Parser;
+use serde::de::DeserializeOwned;
 use std::path::Path;
 use std::process::ExitCode;
 use turbid::output::write_atomically;
@@ -74,7 +75,7 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
 
 /// The pictures at the size of print, of those that the kept page has compared.
 fn print_all(folder: &Path, settings: &Settings, program: &str) -> anyhow::Result<()> {
-    let shown = all_shown(Path::new(PAGE))?;
+    let shown: Vec<PageEntry> = of_all(Path::new(PAGE))?;
     let chosen: Vec<&Picture> = ALL.iter().filter(|p| settings.has(p)).collect();
     for picture in &chosen {
         check_folder(folder, &[&format!("{}.json", picture.name)])?;
@@ -87,19 +88,23 @@ fn print_all(folder: &Path, settings: &Settings, program: &str) -> anyhow::Resul
         write(&folder.join(format!("{}.json", picture.name)), &serde_json::to_vec_pretty(&printed)?)?;
     }
     say(&format!("the pictures are in {}", folder.display()));
+    if folder == Path::new(PRINT) {
+        write_page(Path::new(PAGE), settings)?;
+    }
     Ok(())
 }
 
 fn write_page(folder: &Path, settings: &Settings) -> anyhow::Result<()> {
-    let page = page::page(&all_shown(folder)?, settings).into_string();
+    let printed: Vec<Printed> = of_all(&folder.join(FROM_PAGE))?;
+    let page = page::page(&of_all(folder)?, &printed, settings).into_string();
     write(&folder.join("index.html"), page.as_bytes())
 }
 
 /// Larger files about a picture are none.
 const MOST_BYTES: u64 = 1 << 26;
 
-/// What is there of all pictures, those of earlier runs too.
-fn all_shown(folder: &Path) -> anyhow::Result<Vec<PageEntry>> {
+/// What a folder has of all pictures, those of earlier runs too.
+fn of_all<T: DeserializeOwned>(folder: &Path) -> anyhow::Result<Vec<T>> {
     let mut found = Vec::new();
     for picture in ALL {
         let path = folder.join(format!("{}.json", picture.name));
@@ -147,7 +152,7 @@ mod tests {
     #[test]
     fn what_is_kept_is_read_whole() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results/gallery");
-        let kept = all_shown(&folder).unwrap();
+        let kept: Vec<PageEntry> = of_all(&folder).unwrap();
         let files = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
         assert_eq!(kept.len(), files.filter(|path| path.extension().is_some_and(|e| e == "json")).count());
         let mean = kept.iter().map(|shown| shown.seconds).sum::<f64>() / kept.len() as f64;

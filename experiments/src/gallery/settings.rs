@@ -57,13 +57,17 @@ fn name(text: &str) -> Result<String, String> {
 
 /// Folder of the kept page.
 pub const PAGE: &str = "results/gallery";
+/// Folder of the kept pictures at the size of print.
+pub const PRINT: &str = "results/print";
+/// Where a page looks for them.
+pub const FROM_PAGE: &str = "../print";
 
 impl Settings {
     /// Folder of the page.
     pub fn folder(&self) -> PathBuf {
         let default = match (self.quick || self.draft, self.print) {
             (true, _) => "results/local/gallery",
-            (_, true) => "results/print",
+            (_, true) => PRINT,
             _ => PAGE,
         };
         self.out.clone().unwrap_or_else(|| PathBuf::from(default))
