@@ -1,11 +1,11 @@
-//! How far turbid stands from what nothing could save: of a flight the parts that any walk has, of a gather the sum alone, of two threads what
+//! How far turbid stands from what nothing could save: of a flight and a path the parts that every walk has, of a gather the sum alone, of two threads what
 //! two computations do that know nothing of each other.
 //!
-//! `cargo bench -p turbid-benches --bench limits -- flight` runs the parts whose name contains a word.
+//! `cargo bench -p turbid-benches --bench limits -- walk` runs the parts whose name contains a word.
 
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use paired::{compare, compare_seconds};
 use std::hint::black_box;
 use std::io::Write;
@@ -14,6 +14,7 @@ use std::time::Instant;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::integrators::path;
 use turbid::math::{Ray, ln_1p, warp};
 use turbid::phase::Isotropic;
 use turbid::photons::{Flags, Histories, Photon, PhotonMap, shoot};
@@ -25,6 +26,7 @@ use turbid::transport::NoProgress;
 /// Rounds, and pairs of a comparison.
 const ROUNDS: usize = 15;
 const HISTORIES: u64 = 1 << 17;
+const PATHS: u64 = 1 << 15;
 const RAYS: u64 = 1 << 17;
 /// Photons of the map, and in a gather.
 const PHOTONS: u64 = 1_000_000;
@@ -36,8 +38,9 @@ fn main() -> Result<()> {
     let is_wanted = |what: &str| wanted.is_empty() || wanted.iter().any(|word| what.contains(word));
     let mut out = std::io::stdout();
     let scene = fogbox()?;
-    if is_wanted("flight") {
-        flight(&scene, &mut out)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    if is_wanted("walk") {
+        pool.install(|| walks(&scene, &mut out))?;
     }
     if is_wanted("gather") {
         gather(&mut out)?;
@@ -68,28 +71,13 @@ fn nanoseconds(count: u64, mut work: impl FnMut() -> Result<()>) -> Result<[f64;
     Ok([ROUNDS / 2, ROUNDS / 4, 3 * ROUNDS / 4].map(|place| times[place]))
 }
 
-/// A photon's flights in the box of fog, and what each of them has to do.
-fn flight(scene: &Scene, out: &mut impl Write) -> Result<()> {
-    let histories = Histories { count: HISTORIES, seed: 1, replicate: 0, max_order: None };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let shot = |is_kept: bool| pool.install(|| shoot(scene, histories, &[], |_| is_kept, &NoProgress));
-    let report = shot(false)?.report;
-    let flights = report.collisions + report.hits + report.ends.escaped;
-    writeln!(out, "a flight of a photon in the box of fog, {} of them, ns: median, quartiles", flights)?;
-    let mut row = |name: &str, [median, low, high]: [f64; 3]| {
-        writeln!(out, "{name:48} {median:8.1} ({low:.1} to {high:.1})")
-    };
-    for (name, is_kept) in [("all of it, photons stored", true), ("all of it, none stored", false)] {
-        // By the clock on the wall: the work is another thread's.
-        let mut times: Vec<f64> = Vec::new();
-        for _ in 0..ROUNDS {
-            let start = Instant::now();
-            black_box(shot(is_kept)?);
-            times.push(start.elapsed().as_secs_f64() * 1e9 / flights as f64);
-        }
-        times.sort_unstable_by(f64::total_cmp);
-        row(name, [ROUNDS / 2, ROUNDS / 4, 3 * ROUNDS / 4].map(|place| times[place]))?;
-    }
+/// Median and quartiles, and of how many.
+fn row(out: &mut impl Write, name: &str, [median, low, high]: [f64; 3]) -> Result<()> {
+    Ok(writeln!(out, "{name:48} {median:8.1} ({low:.1} to {high:.1})")?)
+}
+
+/// A photon's flights and a path in the box of fog, and what each of them has to do.
+fn walks(scene: &Scene, out: &mut impl Write) -> Result<()> {
     let rays: Vec<Ray> = (0..RAYS)
         .map(|number| {
             let mut stream = Stream::new(4, Purpose::Synthetic, 0, number);
@@ -97,28 +85,70 @@ fn flight(scene: &Scene, out: &mut impl Write) -> Result<()> {
             Ray::new(place, warp::square_to_sphere(stream.pair()))
         })
         .collect();
-    let hits = nanoseconds(RAYS, || {
+    let mut stream = Stream::new(5, Purpose::Synthetic, 0, 0);
+    let hit = nanoseconds(RAYS, || {
         rays.iter().for_each(|ray| _ = black_box(scene.hit(ray, None)));
         Ok(())
     })?;
-    row("the nearest of 18 rectangles", hits)?;
-    let mut stream = Stream::new(5, Purpose::Synthetic, 0, 0);
-    let distances = nanoseconds(RAYS, || {
+    // To places in the room, as from there to a lamp.
+    let shadow = nanoseconds(RAYS, || {
+        rays.iter().for_each(|ray| _ = black_box(scene.sees(ray, None, 0.5)));
+        Ok(())
+    })?;
+    let distance = nanoseconds(RAYS, || {
         (0..RAYS).for_each(|_| _ = black_box(-ln_1p(-stream.unit())));
         Ok(())
     })?;
-    row("a distance: a number and a logarithm", distances)?;
-    let directions = nanoseconds(RAYS, || {
+    let direction = nanoseconds(RAYS, || {
         (0..RAYS).for_each(|_| _ = black_box(warp::square_to_sphere(stream.pair())));
         Ok(())
     })?;
-    row("a direction: two numbers, sine, cosine, root", directions)?;
-    let survivals = nanoseconds(RAYS, || {
+    let survival = nanoseconds(RAYS, || {
         (0..RAYS).for_each(|_| _ = black_box(stream.unit() < 0.8));
         Ok(())
     })?;
-    row("whether it survives: a number", survivals)?;
-    Ok(())
+    let histories = Histories { count: HISTORIES, seed: 1, replicate: 0, max_order: None };
+    let shot = |is_kept: bool| shoot(scene, histories, &[], |_| is_kept, &NoProgress);
+    let report = shot(false)?.report;
+    let flights = report.collisions + report.hits + report.ends.escaped;
+    let [kept, flown] =
+        [true, false].map(|is_kept| nanoseconds(flights, || Ok(_ = black_box(shot(is_kept)?))));
+    let flown = flown?;
+    let parts = [hit, distance, direction, survival].iter().map(|part| part[0]).sum::<f64>();
+    writeln!(out, "a flight of a photon in the box of fog, ns: median, quartiles")?;
+    row(out, "all of it, photons stored", kept?)?;
+    row(out, "all of it, none stored", flown)?;
+    row(out, "the nearest of 18 rectangles", hit)?;
+    row(out, "a distance: a number and a logarithm", distance)?;
+    row(out, "a direction: two numbers, sine, cosine, root", direction)?;
+    row(out, "whether it survives: a number", survival)?;
+    row(out, "the rest, none stored", flown.map(|all| all - parts))?;
+
+    let camera = scene.camera().context("no camera")?.with_size(128, 128)?;
+    let (mut segments, mut shadows) = (0, 0);
+    let path = nanoseconds(PATHS, || {
+        (segments, shadows) = (0, 0);
+        for number in 0..PATHS {
+            let mut stream = Stream::new(1, Purpose::Paths, 0, number);
+            let ray = camera.ray(DVec2::from(stream.pair()) * 128.0);
+            let (layers, rays) = path::layers(scene, ray, None, 0, &mut stream);
+            black_box(layers);
+            (segments, shadows) = (segments + rays.segments, shadows + rays.shadow);
+        }
+        Ok(())
+    })?;
+    let [segments, shadows] = [segments, shadows].map(|count| count as f64 / PATHS as f64);
+    let parts = segments * (hit[0] + distance[0] + direction[0] + survival[0]) + shadows * shadow[0];
+    writeln!(out, "a path there, of {segments:.1} segments and {shadows:.1} shadow rays, ns")?;
+    row(out, "all of it", path)?;
+    row(out, "its nearest hits", hit.map(|one| segments * one))?;
+    row(out, "its shadow rays", shadow.map(|one| shadows * one))?;
+    row(
+        out,
+        "distances, directions, survival",
+        [0, 1, 2].map(|i| segments * (distance[i] + direction[i] + survival[i])),
+    )?;
+    row(out, "the rest", path.map(|all| all - parts))
 }
 
 /// A gather at fixed radius, and the sum over the same photons that lie in a map of their own, where there is nothing to search.

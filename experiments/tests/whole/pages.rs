@@ -138,13 +138,13 @@ fn every_link_of_the_pages_leads_somewhere() {
 #[test]
 fn the_benchmarks_are_kept_outputs() {
     let kept: String =
-        ["tree", "fogbox", "others", "guided", "maps", "lines", "plan", "memory", "growth", "referee"]
+        ["tree", "fogbox", "others", "guided", "maps", "lines", "plan", "memory", "growth", "limits", "referee"]
             .map(|name| read(&format!("results/speed/{name}.txt")))
             .concat();
     let page = read("BENCHMARKS.md");
     let blocks: Vec<&str> =
         page.split("```text\n").skip(1).map(|rest| rest.split("\n```").next().unwrap()).collect();
-    assert_eq!(blocks.len(), 13);
+    assert_eq!(blocks.len(), 14);
     for line in blocks.iter().flat_map(|block| block.lines()) {
         assert!(kept.lines().any(|kept| kept == line), "not printed by a bench: {line}");
     }
