@@ -62,7 +62,7 @@ pub fn steps_that_share_a_gather_have_their_sum() {
                 let settings = Settings { spacing, ..settings };
                 let mapper = Mapper::new(&scene, &maps, &settings);
                 let (mut moments, mut gathers) = ([Moments::new(); 3], 0);
-                for history in 0..10_000 {
+                for history in 0..4000 {
                     let mut stream = Stream::new(seed, Purpose::Paths, replicate, history);
                     let (layers, report) = mapper.radiance(ray, None, 0, &mut stream);
                     for (channel, moments) in moments.iter_mut().enumerate() {

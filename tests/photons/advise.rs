@@ -101,7 +101,7 @@ impl Case {
 fn isotropic_slab() {
     let case = Case::slab(0.0);
     let (advice, relative) =
-        case.check("squared error over the advised one, g = 0", 2_000_000, 0.05, 150, 11);
+        case.check("squared error over the advised one, g = 0", 2_000_000, 0.05, 100, 11);
     // The negative control has half of the variance.
     let (bias, noise, all) = (advice.bias.powi(2), advice.noise.powi(2), advice.error.powi(2));
     verdict::rejects("half of the variance", &relative, (bias + 0.5 * noise) / all, 11);
@@ -109,7 +109,7 @@ fn isotropic_slab() {
 
 #[test]
 fn forward_scattering_slab() {
-    Case::slab(0.75).check("squared error over the advised one, g = 0.75", 2_000_000, 0.05, 100, 13);
+    Case::slab(0.75).check("squared error over the advised one, g = 0.75", 2_000_000, 0.05, 80, 13);
 }
 
 #[test]

@@ -90,7 +90,7 @@ fn windows_reach_the_deep_place() {
     let aside = (DVec3::new(95.0, 55.0, 5.0), 7.93924e-4, 0.0089);
     for ((at, value, relative), seed) in [((DVec3::splat(DEEP.0), DEEP.1, 0.00383), 31), (aside, 32)] {
         let scene = shield(DEEP.0);
-        let moments = guided(&scene, &Quantity::Fluence(at), 1 << 19, seed);
+        let moments = guided(&scene, &Quantity::Fluence(at), 1 << 18, seed);
         verdict::agrees(&format!("fluence at {at}"), &moments, (value, relative * value), 0.25 * value, seed);
         if seed == 31 {
             verdict::rejects("uncollided alone", &moments, 3.01032e-6, seed);

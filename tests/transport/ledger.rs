@@ -105,7 +105,7 @@ fn gathered_beside_rays_that_are_read_at_once() {
         [(standard.volume.along_rays(radius), 41), (standard.volume.along_beams(radius), 42)]
     {
         let settings = Settings { volume, ..standard };
-        layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings, 4000, seed);
+        layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings, 2500, seed);
     }
 }
 

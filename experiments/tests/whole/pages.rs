@@ -137,10 +137,12 @@ fn every_link_of_the_pages_leads_somewhere() {
 /// What BENCHMARKS.md says was printed is what a bench has printed.
 #[test]
 fn the_benchmarks_are_kept_outputs() {
-    let kept: String =
-        ["tree", "fogbox", "others", "guided", "maps", "lines", "plan", "memory", "growth", "limits", "referee"]
-            .map(|name| read(&format!("results/speed/{name}.txt")))
-            .concat();
+    let kept: String = [
+        "tree", "fogbox", "others", "guided", "maps", "lines", "plan", "memory", "growth", "limits",
+        "referee",
+    ]
+    .map(|name| read(&format!("results/speed/{name}.txt")))
+    .concat();
     let page = read("BENCHMARKS.md");
     let blocks: Vec<&str> =
         page.split("```text\n").skip(1).map(|rest| rest.split("\n```").next().unwrap()).collect();
