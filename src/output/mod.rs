@@ -1,7 +1,8 @@
-//! Files that appear whole or not at all: tables that keep every bit, pictures, point clouds.
+//! Files that appear whole or not at all: tables that keep every bit, pictures, point clouds; and their digests.
 
 mod atomic;
 mod bins;
+mod digest;
 mod error_picture;
 mod exr;
 mod npy;
@@ -14,6 +15,7 @@ mod tone;
 
 pub use atomic::{WriteError, check_writable, is_same_file, write_atomically};
 pub use bins::{npy, voxel_grid};
+pub use digest::Digest;
 pub use error_picture::{error_scale, write_error_picture};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
 pub use npy::write_photons_npy;
