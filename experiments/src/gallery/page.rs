@@ -95,7 +95,7 @@ const RENDERS: [(&str, &str); 5] = [
 ];
 
 /// The page of all pictures that are there.
-pub fn page(shown: &[PageEntry], printed: &[Printed], settings: &Settings) -> Markup {
+pub fn page(shown: &[PageEntry], printed: &[(&str, Printed)], settings: &Settings) -> Markup {
     let entries: Vec<(&Picture, &PageEntry)> = ALL
         .iter()
         .filter_map(|picture| Some((picture, shown.iter().find(|s| s.name == picture.name)?)))
@@ -114,7 +114,7 @@ pub fn page(shown: &[PageEntry], printed: &[Printed], settings: &Settings) -> Ma
                 ul.index { @for (picture, shown) in &entries { li { (thumbnail(picture, shown)) } } }
                 (method(settings))
                 @for (picture, shown) in &entries {
-                    (section(picture, shown, printed.iter().find(|printed| printed.name == picture.name)))
+                    (section(picture, shown, printed.iter().find(|(name, _)| *name == picture.name).map(|(_, printed)| printed)))
                 }
                 (speed::section(&speed::rows()))
                 script { (PreEscaped(SCRIPT)) }

@@ -18,21 +18,18 @@ use turbid::Spectrum;
 
 /// Columns of pixels.
 const WIDTH: f64 = 960.0;
-/// The page's samples a pixel for one of these: on the same paper are seven to fourteen times as many pixels.
-const FEWER: u64 = 4;
 /// Samples of the reference for one of the rival's, in passes of which a stopped run loses a part of one: half of its error is left.
 const PASSES: u64 = 4;
 
 /// How the pictures of a scene were made.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Printed {
-    /// The picture's name.
-    pub name: String,
     /// Columns and rows of pixels.
     pub size: (usize, usize),
     /// The photon mapper's picture.
     pub ours: RenderRecord,
     /// The same with its medium read along whole rays, by the name of the file.
+    #[serde(default)]
     pub along: Vec<(String, RenderRecord)>,
     /// The rival's name.
     pub rival: String,
@@ -70,7 +67,7 @@ pub fn print(
         let file = folder.join(format!("{}-{kind}.png", picture.name));
         develop(grid, radiance, tone(picture.exposure)).write(&file)
     };
-    let ours = cache.photons("photons", picture.samples.div_ceil(FEWER), 0)?;
+    let ours = cache.photons("photons", picture.samples, 0)?;
     write("photons", &ours.total)?;
     let mut along = Vec::new();
     for of in picture.lines.iter().flat_map(|lines| Stored::ALL.map(|stored| (lines, stored))) {
@@ -92,7 +89,6 @@ pub fn print(
     let all = ours.facts.seconds + beside + equal.facts.seconds + seconds;
     say(&format!("{}: {} of CPU time", picture.name, duration(all)));
     Ok(Printed {
-        name: picture.name.to_string(),
         size: (grid.width, grid.height),
         ours: ours.facts,
         along,

@@ -75,15 +75,16 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
 
 /// The pictures at the size of print, of those that the kept page has compared.
 fn print_all(folder: &Path, settings: &Settings, program: &str) -> anyhow::Result<()> {
-    let shown: Vec<PageEntry> = of_all(Path::new(PAGE))?;
+    let shown = of_all::<PageEntry>(Path::new(PAGE))?;
     let chosen: Vec<&Picture> = ALL.iter().filter(|p| settings.has(p)).collect();
     for picture in &chosen {
         check_folder(folder, &[&format!("{}.json", picture.name)])?;
         check_folder(&settings.cache().join(picture.name), &["photons.picture"])?;
     }
     for picture in chosen {
-        let page = shown.iter().find(|shown| shown.name == picture.name);
-        let page = page.with_context(|| format!("{} is not in {PAGE}: make its page first", picture.name))?;
+        let page = shown.iter().find(|(name, _)| *name == picture.name);
+        let (_, page) =
+            page.with_context(|| format!("{} is not in {PAGE}: make its page first", picture.name))?;
         let printed = print(picture, page, settings, folder, program).context(picture.name)?;
         write(&folder.join(format!("{}.json", picture.name)), &serde_json::to_vec_pretty(&printed)?)?;
     }
@@ -95,21 +96,23 @@ fn print_all(folder: &Path, settings: &Settings, program: &str) -> anyhow::Resul
 }
 
 fn write_page(folder: &Path, settings: &Settings) -> anyhow::Result<()> {
-    let printed: Vec<Printed> = of_all(&folder.join(FROM_PAGE))?;
-    let page = page::page(&of_all(folder)?, &printed, settings).into_string();
+    let shown: Vec<PageEntry> = of_all(folder)?.into_iter().map(|(_, shown)| shown).collect();
+    let printed = of_all::<Printed>(&folder.join(FROM_PAGE))?;
+    let page = page::page(&shown, &printed, settings).into_string();
     write(&folder.join("index.html"), page.as_bytes())
 }
 
 /// Larger files about a picture are none.
 const MOST_BYTES: u64 = 1 << 26;
 
-/// What a folder has of all pictures, those of earlier runs too.
-fn of_all<T: DeserializeOwned>(folder: &Path) -> anyhow::Result<Vec<T>> {
+/// What a folder has of all pictures, by name, those of earlier runs too.
+fn of_all<T: DeserializeOwned>(folder: &Path) -> anyhow::Result<Vec<(&'static str, T)>> {
     let mut found = Vec::new();
     for picture in ALL {
         let path = folder.join(format!("{}.json", picture.name));
         if let Some(text) = read_if_there(&path, MOST_BYTES)? {
-            found.push(serde_json::from_slice(&text).with_context(|| path.display().to_string())?);
+            let read = serde_json::from_slice(&text).with_context(|| path.display().to_string())?;
+            found.push((picture.name, read));
         }
     }
     Ok(found)
@@ -152,7 +155,7 @@ mod tests {
     #[test]
     fn what_is_kept_is_read_whole() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results/gallery");
-        let kept: Vec<PageEntry> = of_all(&folder).unwrap();
+        let kept: Vec<PageEntry> = of_all(&folder).unwrap().into_iter().map(|(_, shown)| shown).collect();
         let files = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
         assert_eq!(kept.len(), files.filter(|path| path.extension().is_some_and(|e| e == "json")).count());
         let mean = kept.iter().map(|shown| shown.seconds).sum::<f64>() / kept.len() as f64;
