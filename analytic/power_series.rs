@@ -8,21 +8,22 @@ pub const ORDERS: usize = 12;
 /// Coefficients by powers of s and t.
 type Table = [[f64; ORDERS + 1]; ORDERS + 1];
 
-/// The second moment of F, relative to the square of its mean, and the part of it that higher orders than [`ORDERS`] would have, as if
-/// these had no error: of n + 1 independent estimates Y of a mean that is 0 here,
+/// What orders up to [`ORDERS`] bring to the second moment of an estimate F of mean 1: of n + 1 independent estimates Y of a mean that is 0 here,
 ///
 /// F = mean over i of e^(-Y_i) sum over k <= n of e_k / (C(n, k) k! Q_k)
 ///
 /// with e_k the sum of products of k of the n differences Y_i - Y_j, and Q_k the chance that n, which is drawn, reaches k.
 ///
-/// # Arguments
-/// `nodes` values of an estimate with weights that sum to 1; `reaches` the chance of each order to be reached, 1 of order 0
-/// # Limits
-/// higher orders have no error: they are reached seldom, or have small terms
-/// # Method
 /// Sums of products of k differences from one pivot and l from another have the generating function of independent factors: with
 /// y = p - Y and y' = q - Y, E prod (1 + s y)(1 + t y') = (1 + s E y + t E y' + s t E y y')^n; where a pivot is among the other's
 /// estimates its factor is known.
+///
+/// # Arguments
+/// `nodes` values of an estimate with weights that sum to 1; `reaches` the chance of each order to be reached, above 0, and 1 of order 0
+///
+/// # Limits
+/// higher orders are left out: if they had no error they would bring the chance to reach them
+///
 /// # Source
 /// Kettunen, d'Eon, Pantaleoni and Novak 2021, "An unbiased ray-marching transmittance estimator", for the estimator
 pub fn second_moment(nodes: &[(f64, f64)], reaches: impl Fn(usize) -> f64) -> f64 {
@@ -122,7 +123,7 @@ mod tests {
         }
         let found = second_moment(&nodes, |k| if k < 4 { reaches(k) } else { 1e-30 });
         assert!((found / counted[1] - 1.0).abs() < 1e-13, "{found} {}", counted[1]);
-        // Four orders leave out what the series has beyond, some 1e-4 here.
+        // What the series has beyond four orders is missing.
         assert!((counted[0] - 1.0).abs() < 1e-3, "{}", counted[0]);
         assert!(counted[1] > 1.01);
     }

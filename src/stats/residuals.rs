@@ -15,7 +15,7 @@ pub struct Residuals {
 }
 
 impl Residuals {
-    /// Of quantities by their value in each of the maps, and by the bound of their numerical error in the same unit.
+    /// Of quantities by their value in each of two maps or more, and by the bound of their numerical error in the same unit.
     ///
     /// # Limits
     /// a quantity without spread stays at no distance
