@@ -2,7 +2,7 @@
 
 use libm::exp;
 
-/// Highest order that counts.
+/// Highest order that counts: estimates of transmittance come here with a chance of 1e-6, and terms fall by factorials.
 pub const ORDERS: usize = 12;
 
 /// Coefficients by powers of s and t.
@@ -19,7 +19,7 @@ type Table = [[f64; ORDERS + 1]; ORDERS + 1];
 /// estimates its factor is known.
 ///
 /// # Arguments
-/// `nodes` values of an estimate with weights that sum to 1; `reaches` the chance of each order to be reached, above 0, and 1 of order 0
+/// `nodes` values of an estimate of mean 0 with weights that sum to 1; `reaches` the chance of each order to be reached, above 0, and 1 of order 0
 ///
 /// # Limits
 /// higher orders are left out: if they had no error they would bring the chance to reach them

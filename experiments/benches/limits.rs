@@ -71,7 +71,7 @@ fn nanoseconds(count: u64, mut work: impl FnMut() -> Result<()>) -> Result<[f64;
     Ok([ROUNDS / 2, ROUNDS / 4, 3 * ROUNDS / 4].map(|place| times[place]))
 }
 
-/// Median and quartiles, and of how many.
+/// Median and quartiles.
 fn row(out: &mut impl Write, name: &str, [median, low, high]: [f64; 3]) -> Result<()> {
     Ok(writeln!(out, "{name:48} {median:8.1} ({low:.1} to {high:.1})")?)
 }

@@ -218,7 +218,8 @@ fn links(picture: &Picture, printed: &Printed) -> Markup {
                     (link(kind, stored.name())) ", "
                 }
             }
-            (link("rival", &printed.rival)) " (" (told(&printed.equal)) "); " (link("reference", "reference")) " (by the same method, "
+            (link("rival", &printed.rival)) " (" (told(&printed.equal)) "); " (link("reference", "reference")) " ("
+            @if let Some(by) = &printed.by { "by " (by) ", " }
             (printed.reference.0) " samples per pixel, " (duration(printed.reference.1)) ")."
         }
     }

@@ -60,7 +60,7 @@ pub struct Picture {
     /// The most samples per pixel of one of the 64 passes of the reference: a pilot says how many are needed. More are taken only
     /// where a picture beside the reference has more than all passes together.
     pub reference: u64,
-    /// What of the reference is found by light tracing.
+    /// What of the page's reference is found by light tracing.
     pub by_light: ByLight,
     /// How it is made of light read along whole rays, beside the picture; none where no medium scatters, or nothing is asked.
     pub lines: Option<Lines>,

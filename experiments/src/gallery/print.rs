@@ -18,7 +18,8 @@ use turbid::Spectrum;
 
 /// Columns of pixels.
 const WIDTH: f64 = 960.0;
-/// Samples of the reference for one of the rival's, in passes of which a stopped run loses a part of one: half of its error is left.
+/// Passes of the reference, each of the rival's method and samples, so that its error is half of the rival's; a stopped run loses a part of
+/// one.
 const PASSES: u64 = 4;
 
 /// How the pictures of a scene were made.
@@ -35,8 +36,11 @@ pub struct Printed {
     pub rival: String,
     /// Its picture in the same time.
     pub equal: RenderRecord,
-    /// Samples per pixel and CPU seconds of the reference, by the rival's method.
+    /// Samples per pixel and CPU seconds of the reference.
     pub reference: (u64, f64),
+    /// The method of the reference; not told by pictures that were made when it was that of the page's.
+    #[serde(default)]
+    pub by: Option<String>,
 }
 
 /// Makes the pictures of one scene.
@@ -94,6 +98,7 @@ pub fn print(
         along,
         rival: compared.rival.clone(),
         reference: (equal.facts.samples * PASSES, seconds),
+        by: Some(rival.name().to_string()),
         equal: equal.facts,
     })
 }

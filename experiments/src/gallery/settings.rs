@@ -36,7 +36,8 @@ pub struct Settings {
     /// Take what another build of the program made
     #[arg(long, conflicts_with = "fresh")]
     pub reuse: bool,
-    /// 960 pixels wide, of what the page has compared: photon map, its rival, those along rays, and the reference alone
+    /// 960 pixels wide, of what the page has compared: the photon map, what is read along rays, the rival and the reference; the kept page
+    /// then leads to them
     #[arg(long, conflicts_with_all = ["quick", "draft", "page"])]
     pub print: bool,
     /// Only write the page anew, from the numbers and pictures that are in its folder

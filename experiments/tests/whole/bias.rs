@@ -6,7 +6,7 @@ use std::path::Path;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_bias");
 
-/// A hundredth of the photons, some ten seconds: every map of the real one is shot, every case predicted, gathered, judged and drawn; and
+/// A hundredth of the photons: every map of the real one is shot, every case predicted, gathered, judged and drawn; and
 /// a quarter of the cells again, on other threads.
 #[test]
 fn the_same_results_on_one_thread_and_two_and_after_a_loss() {

@@ -2,7 +2,7 @@
 
 use super::run;
 
-/// A fiftieth of the photons, some fifteen seconds: every map is shot, every exponent fitted, judged and drawn.
+/// A fiftieth of the photons: every map is shot, every exponent fitted, judged and drawn.
 #[test]
 fn the_experiment_runs_and_finds_no_contradiction() {
     run::finds_no_contradiction(env!("CARGO_BIN_EXE_dimension"), "0.02");

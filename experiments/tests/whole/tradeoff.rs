@@ -4,7 +4,7 @@ use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_tradeoff");
 
-/// A hundredth of the photons, some ten seconds: every map of the real one is shot, gathered, judged and drawn, a quarter of them on other
+/// A hundredth of the photons: every map of the real one is shot, gathered, judged and drawn, a quarter of them on other
 /// threads too, and the predictions are those of the real one.
 #[test]
 fn the_same_results_on_one_thread_and_two() {

@@ -4,7 +4,7 @@ use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_transmittance");
 
-/// A tenth of the estimates, some two seconds: the results do not depend on the threads, nor on lost cells, every case is judged and
+/// A tenth of the estimates: the results do not depend on the threads, nor on lost cells, every case is judged and
 /// drawn, and nothing is rejected.
 #[test]
 fn a_tenth_of_the_estimates() {
