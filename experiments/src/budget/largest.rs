@@ -10,7 +10,7 @@
 
 use super::sets::{Group, distance, predicted};
 use crate::harness::Digest;
-use crate::prediction::{Entry, Term};
+use crate::prediction::Term;
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::{Moments, Residuals, normal_critical, student_p};
 use turbid::transport::in_parallel;
@@ -87,8 +87,7 @@ impl Null {
 
 /// The group's values, for resampling.
 fn residuals(group: &Group) -> Residuals {
-    let of = |entry: &&Entry| (&entry.maps[..], entry.error);
-    Residuals::new(&group.entries.iter().map(of).collect::<Vec<_>>())
+    Residuals::new(&group.entries.iter().map(|entry| (&entry.maps[..], entry.error)).collect::<Vec<_>>())
 }
 
 /// A two-sided p-value in deviations of a normal number.
@@ -105,8 +104,9 @@ pub fn deviations(p: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::sets::groups;
-    use super::super::sets::tests::made_up;
     use super::*;
+    use super::*;
+    use crate::prediction::Entry;
     use turbid::stats::{ALPHA, wilson_interval};
 
     /// Two cases by hand: 1 to 5 against 2, with and without a numerical error, at 4 degrees: p = 1 - s (3 - s^2)/2 with
