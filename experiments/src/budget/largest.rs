@@ -104,7 +104,7 @@ pub fn deviations(p: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::sets::groups;
-    use super::*;
+    use super::super::sets::tests::made_up;
     use super::*;
     use crate::prediction::Entry;
     use turbid::stats::{ALPHA, wilson_interval};
