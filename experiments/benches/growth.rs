@@ -10,7 +10,7 @@
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
 use glam::{DVec3, Vec3};
-use paired::compare_seconds;
+use paired::{compare_seconds, strewn};
 use std::hint::black_box;
 use std::io::Write;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ use turbid::math::{Interval, Ray, ln, sin, warp};
 use turbid::phase::Isotropic;
 use turbid::photons::beams::{Beam, BeamKind, BeamTree};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
-use turbid::photons::{Flags, Photon, PhotonMap, PhotonTree, Photons};
+use turbid::photons::{Flags, PhotonMap, PhotonTree, Photons};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Scene, SceneFile};
 use turbid::sensor::{Method, Streams};
@@ -100,7 +100,7 @@ impl Bench {
             timed(|| Ok(_ = black_box(fill(&fog, &amounts(1, counts[size] as u64), &NoProgress)?)))
         })?;
         self.row("photons in a tree: its build", counts, |size| {
-            let photons = strewn(counts[size] as u64);
+            let photons = evenly(counts[size] as u64);
             timed(|| Ok(_ = black_box(PhotonTree::new(photons)?)))
         })?;
         let name = "photons in a map: a gather of the 100 nearest";
@@ -306,22 +306,12 @@ fn from_maps(scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-/// Photons strewn evenly in a unit cube.
-fn strewn(count: u64) -> Photons {
-    let mut stream = Stream::new(1, Purpose::Synthetic, 0, 0);
-    let photon = |_| Photon {
-        position: DVec3::from(stream.triple()),
-        dir: warp::square_to_sphere(stream.pair()).as_vec3(),
-        normal: Vec3::ZERO,
-        power: Vec3::ONE,
-        order: 1,
-        flags: Flags::MEDIUM,
-    };
-    (0..count).map(photon).collect()
+fn evenly(count: u64) -> Photons {
+    strewn(count, &mut Stream::new(1, Purpose::Synthetic, 0, 0)).collect()
 }
 
 fn map(count: u64) -> Result<PhotonMap> {
-    Ok(PhotonMap::new(strewn(count), count)?)
+    Ok(PhotonMap::new(evenly(count), count)?)
 }
 
 /// Seconds of a gather of the k nearest, along lines through the map: places of one after the other are neighbours.

@@ -1,12 +1,12 @@
-//! How far turbid stands from what nothing could save: of a flight and a path the parts that every walk has, of a gather the sum alone, of two threads what
-//! two computations do that know nothing of each other.
+//! How far turbid stands from what nothing could save: of a flight and a path the parts that every walk has, of a gather the sum alone, of
+//! two threads what two computations do that know nothing of each other.
 //!
 //! `cargo bench -p turbid-benches --bench limits -- walk` runs the parts whose name contains a word.
 
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
-use glam::{DVec2, DVec3, Vec3};
-use paired::{compare, compare_seconds};
+use glam::{DVec2, DVec3};
+use paired::{compare, compare_seconds, strewn};
 use std::hint::black_box;
 use std::io::Write;
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::path;
 use turbid::math::{Ray, ln_1p, warp};
 use turbid::phase::Isotropic;
-use turbid::photons::{Flags, Histories, Photon, PhotonMap, shoot};
+use turbid::photons::{Histories, Photon, PhotonMap, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Scene, SceneFile};
 use turbid::sensor::{Method, Streams};
@@ -154,16 +154,7 @@ fn walks(scene: &Scene, out: &mut impl Write) -> Result<()> {
 /// A gather at fixed radius, and the sum over the same photons that lie in a map of their own, where there is nothing to search.
 fn gather(out: &mut impl Write) -> Result<()> {
     let mut stream = Stream::new(1, Purpose::Synthetic, 0, 0);
-    let photons: Vec<Photon> = (0..PHOTONS)
-        .map(|_| Photon {
-            position: DVec3::from(stream.triple()),
-            dir: warp::square_to_sphere(stream.pair()).as_vec3(),
-            normal: Vec3::ZERO,
-            power: Vec3::ONE,
-            order: 1,
-            flags: Flags::MEDIUM,
-        })
-        .collect();
+    let photons: Vec<Photon> = strewn(PHOTONS, &mut stream).collect();
     let radius = libm::cbrt(IN_RANGE / PHOTONS as f64 * 0.75 / std::f64::consts::PI);
     let places: Vec<DVec3> =
         (0..GATHERS).map(|_| DVec3::splat(0.1) + 0.8 * DVec3::from(stream.triple())).collect();

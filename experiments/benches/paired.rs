@@ -1,7 +1,22 @@
-//! A comparison of two ways to do the same work: A and B in turn, and the ratio of their median times.
+//! A comparison of two ways to do the same work: A and B in turn, and the ratio of their median times; and photons that several benchmarks ask.
 
 use cpu_time::ThreadTime;
+use glam::{DVec3, Vec3};
+use turbid::math::warp;
+use turbid::photons::{Flags, Photon};
 use turbid::rng::{Purpose, Stream};
+
+/// Photons strewn evenly in a unit cube.
+pub fn strewn(count: u64, stream: &mut Stream) -> impl Iterator<Item = Photon> {
+    (0..count).map(move |_| Photon {
+        position: DVec3::from(stream.triple()),
+        dir: warp::square_to_sphere(stream.pair()).as_vec3(),
+        normal: Vec3::ZERO,
+        power: Vec3::ONE,
+        order: 1,
+        flags: Flags::MEDIUM,
+    })
+}
 
 /// How many times faster B is than A.
 #[derive(Debug, Clone, Copy)]

@@ -1,8 +1,7 @@
-//! Files that appear whole or not at all: tables that keep every bit, pictures, point clouds; and their digests.
+//! Files that appear whole or not at all: tables that keep every bit, pictures, point clouds.
 
 mod atomic;
 mod bins;
-mod digest;
 mod error_picture;
 mod exr;
 mod npy;
@@ -15,7 +14,6 @@ mod tone;
 
 pub use atomic::{WriteError, check_writable, is_same_file, write_atomically};
 pub use bins::{npy, voxel_grid};
-pub use digest::Digest;
 pub use error_picture::{error_scale, write_error_picture};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
 pub use npy::write_photons_npy;

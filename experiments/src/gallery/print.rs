@@ -38,7 +38,7 @@ pub struct Printed {
     pub equal: RenderRecord,
     /// Samples per pixel and CPU seconds of the reference.
     pub reference: (u64, f64),
-    /// The method of the reference; not told by pictures that were made when it was that of the page's.
+    /// The method of the reference; older pictures do not tell it.
     #[serde(default)]
     pub by: Option<String>,
 }
