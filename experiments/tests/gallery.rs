@@ -96,6 +96,10 @@ fn the_kept_page_shows_the_kept_numbers() {
         page == std::fs::read_to_string(kept.join("index.html")).unwrap(),
         "gallery --page writes another"
     );
+    for picture in ALL {
+        let command = command(picture, 1).unwrap();
+        assert!(page.contains(&command), "{}: not by {command}", picture.name);
+    }
     let shown: BTreeSet<&str> =
         page.split("src=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
     let files =

@@ -32,6 +32,18 @@ pub fn write_atomically(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), WriteError> {
+    write_and_hold(path, write).map(drop)
+}
+
+/// The same, and this process holds a lock on the new file, from before it has its name, for as long as what is returned lives. None of
+/// what is no regular file, and none that counts where there are no locks.
+///
+/// # Errors
+/// As [`write_atomically`]
+pub fn write_and_hold(
+    path: impl AsRef<Path>,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<Option<fs::File>, WriteError> {
     let path = path.as_ref();
     try_write(path, write).map_err(|cause| WriteError { path: path.to_path_buf(), cause: bare(cause) })
 }
@@ -153,12 +165,16 @@ fn remove_left_over(folder: &Path) {
     }
 }
 
-fn try_write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+fn try_write(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<Option<fs::File>> {
     let target = match place(path)? {
         Place::Direct(target) => {
             let mut file = BufWriter::new(fs::OpenOptions::new().write(true).open(&target)?);
             write(&mut file)?;
-            return file.flush();
+            file.flush()?;
+            return Ok(None);
         }
         Place::Renamed(target) => target,
     };
@@ -169,8 +185,7 @@ fn try_write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
     buffered.flush()?;
     drop(buffered);
     temporary.as_file().sync_all()?;
-    temporary.persist(&target).map_err(|e| e.error)?;
-    Ok(())
+    Ok(Some(temporary.persist(&target).map_err(|e| e.error)?))
 }
 
 #[cfg(test)]
@@ -185,6 +200,22 @@ mod tests {
         write_atomically(&path, |w| w.write_all(b"two")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    /// Another process would find it locked until it is let go.
+    #[test]
+    fn a_file_can_be_held() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let is_free = || fs::File::open(&path).unwrap().try_lock().is_ok();
+        let held = write_and_hold(&path, |w| w.write_all(b"one")).unwrap();
+        assert!(held.is_some() && !is_free());
+        let again = write_and_hold(&path, |w| w.write_all(b"two")).unwrap();
+        drop(held);
+        assert!(!is_free());
+        drop(again);
+        assert!(is_free());
+        assert_eq!(fs::read(&path).unwrap(), b"two");
     }
 
     /// What a temporary file adds to the system's errors, its own name, is taken off again.

@@ -12,7 +12,7 @@ mod stdout;
 mod table;
 mod tone;
 
-pub use atomic::{WriteError, check_writable, is_same_file, write_atomically};
+pub use atomic::{WriteError, check_writable, is_same_file, write_and_hold, write_atomically};
 pub use bins::{npy, voxel_grid};
 pub use error_picture::{error_scale, write_error_picture};
 pub use exr::{PROVENANCE, encode_exr, write_exr};

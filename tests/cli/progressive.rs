@@ -63,6 +63,22 @@ fn another_k_has_other_first_radii() {
     succeeds(&[&all[..], &["--maps", "3"]].concat());
 }
 
+/// A run beside another one on the same state is refused before it makes anything.
+#[test]
+fn a_state_has_one_run_at_a_time() {
+    let folder = Folder::new();
+    let (out, state) = (folder.0.path().join("a.exr"), folder.0.path().join("a.state"));
+    succeeds(&arguments(&out, &["--maps", "2", "--state", text(&state)]));
+    let held = std::fs::File::open(&state).unwrap();
+    held.lock().unwrap();
+    let (kept, picture) = (std::fs::read(&state).unwrap(), std::fs::read(&out).unwrap());
+    let more = ["--maps", "3", "--state", text(&state)];
+    refuses_naming(&arguments(&out, &more), &["a.state", "another run"]);
+    assert!(std::fs::read(&state).unwrap() == kept && std::fs::read(&out).unwrap() == picture);
+    drop(held);
+    succeeds(&arguments(&out, &more));
+}
+
 /// What the files hold that a scene names counts too.
 #[test]
 fn another_grid_is_another_scene() {

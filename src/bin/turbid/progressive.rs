@@ -35,7 +35,8 @@ pub struct Progressive {
     pub is_asked_for: bool,
     /// Keep what a progressive picture is the mean of, written after the first map, every 20 seconds and at the end; where the file is
     /// there, resume from it: for --seconds more, or until there are --maps. The same bits as a run that was never stopped. A run
-    /// that is killed loses 20 seconds at most; --maps 2 makes a picture of what its state holds.
+    /// that is killed loses 20 seconds at most; --maps 2 makes a picture of what its state holds. A second run on a state that one is
+    /// at work on is refused.
     #[arg(long, value_name = "FILE", requires = "progressive")]
     pub state: Option<PathBuf>,
 }

@@ -1,9 +1,10 @@
 //! The file that a progressive picture is resumed from: means and variances of its maps so far, and what they were made from.
 
 use anyhow::{Context, bail};
-use std::fs;
+use std::fs::{self, TryLockError};
+use std::io::Read;
 use std::path::Path;
-use turbid::output::write_atomically;
+use turbid::output::write_and_hold;
 use turbid::sensor::Film;
 
 /// How the file begins, up to the end of the line.
@@ -22,12 +23,14 @@ const TOLD: usize = 200;
 pub struct State {
     /// A sample of each pixel is a map.
     pub film: Film,
+    /// The file as it was read or written last, locked: no other run goes on from it meanwhile.
+    held: Option<fs::File>,
 }
 
 impl State {
     /// Nothing yet.
     pub fn new(width: u32, height: u32) -> Self {
-        State { film: Film::new(width, height) }
+        State { film: Film::new(width, height), held: None }
     }
 
     /// Reads what an earlier run has written, if it was made from the same.
@@ -47,7 +50,16 @@ impl State {
                 named()
             );
         }
-        let bytes = fs::read(file).with_context(named)?;
+        let mut held = fs::File::open(file).with_context(named)?;
+        // Where there are no locks, nothing tells of other runs.
+        if let Err(TryLockError::WouldBlock) = held.try_lock() {
+            bail!(
+                "{}: another run goes on from it; allowed: wait for that one's end, or another name",
+                named()
+            );
+        }
+        let mut bytes = Vec::new();
+        held.read_to_end(&mut bytes).with_context(named)?;
         let mut parts = bytes.splitn(3, |byte| *byte == b'\n');
         let (magic, header, numbers) = (parts.next(), parts.next(), parts.next());
         let (Some(header), Some(numbers), true) = (header, numbers, magic == Some(MAGIC.as_bytes())) else {
@@ -79,12 +91,18 @@ impl State {
                 named()
             );
         };
-        Ok(State { film })
+        Ok(State { film, held: Some(held) })
     }
 
-    /// Writes it.
-    pub fn write(&self, file: &Path, made_from: &serde_json::Value) -> anyhow::Result<()> {
-        write_atomically(file, |out| {
+    /// Writes it, but not over what another run has written since this one began.
+    pub fn write(&mut self, file: &Path, made_from: &serde_json::Value) -> anyhow::Result<()> {
+        if self.held.is_none() && fs::metadata(file).is_ok_and(|found| found.is_file()) {
+            bail!(
+                "--state {}: another run has written it since this one began; allowed: another name, or to go on from it",
+                file.display()
+            );
+        }
+        self.held = write_and_hold(file, |out| {
             writeln!(out, "{MAGIC}\n{made_from}")?;
             out.write_all(&self.film.to_bytes())
         })?;
@@ -117,5 +135,28 @@ mod tests {
         let b = json!({ "first radii": 2, "seed": 2, "width": 8 });
         assert_eq!(differing(&b, &a), Some("seed"));
         assert_eq!(differing(&json!(3), &a), Some("program"));
+    }
+
+    /// One run at a time: what another one holds is not read, and what another one has written since is not written over.
+    #[test]
+    fn a_state_has_one_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, made_from) = (folder.path().join("a.state"), json!({ "seed": 1 }));
+        let (mut first, mut second) = (State::new(2, 2), State::new(2, 2));
+        let refused = |error: anyhow::Error, words: &str| {
+            let said = format!("{error:#}");
+            assert!(said.contains("a.state: another run") && said.contains(words), "{said}");
+        };
+        first.film.push_film(&Film::new(2, 2));
+        first.write(&file, &made_from).unwrap();
+        first.write(&file, &made_from).unwrap();
+        let kept = fs::read(&file).unwrap();
+        refused(second.write(&file, &made_from).unwrap_err(), "has written it");
+        refused(State::read(&file, (2, 2), &made_from).err().unwrap(), "goes on from it");
+        drop(first);
+        let mut third = State::read(&file, (2, 2), &made_from).unwrap();
+        refused(State::read(&file, (2, 2), &made_from).err().unwrap(), "goes on from it");
+        assert_eq!(fs::read(&file).unwrap(), kept);
+        third.write(&file, &made_from).unwrap();
     }
 }
