@@ -1,6 +1,6 @@
 //! Sensors with bins: tables, arrays, grids, and what is refused.
 
-use crate::{Folder, refuses_naming, succeeds, text, turbid};
+use crate::{BELOW_A_PANE, Folder, refuses_naming, succeeds, text, turbid};
 use turbid::medium::Grid;
 
 const SLAB: &str = "cell = 2.0\n[[regions]]\nshape = { slab = { top = 0.0, thickness = 1.0 } }\nsigma_t = [1, 2, 3]\nalbedo = 0.5\ng = 0\n\
@@ -225,12 +225,7 @@ fn bins_where_light_from_outside_has_not_been() {
 #[test]
 fn guided_measurements_say_so() {
     let folder = Folder::new();
-    let scene = "interiors = [{ name = \"glass\", index = 1.5 }]\n\
-                 [[objects]]\nshape = { rectangle = { corner = [-1, -1, 1], u = [2, 0, 0], v = [0, 0, -2] } }\nsurface = { lambertian = { reflectance = 0.5 } }\n\
-                 [[objects]]\nshape = { cuboid = { min = [-1.5, -0.1, -1.5], max = [1.5, 0.1, 1.5] } }\nsurface = { dielectric = { inside = \"glass\" } }\n\
-                 [[lights]]\nsun = { dir = [0.2, -1, 0.3], irradiance = 1, angular_radius = 3 }\n\
-                 [[sensors]]\nname = \"table\"\nmeasure = { radiance = { origin = [0.6, -0.5, 0.5], dir = [-0.58, -0.5, -0.47] } }\n";
-    let file = folder.file("scene.toml", scene);
+    let file = folder.file("scene.toml", BELOW_A_PANE);
     let arguments = ["measure", text(&file), "--with", "paths", "--samples", "20000", "--format", "csv"];
     let paths = succeeds(&arguments);
     let guided = succeeds(&[&arguments[..], &["--guide", "20000"]].concat());

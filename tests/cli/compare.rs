@@ -1,6 +1,6 @@
 //! `turbid render --compare` and `turbid advise` for pictures: what they write, refuse and promise.
 
-use crate::{Folder, refuses_naming, succeeds, text};
+use crate::{BELOW_A_PANE, Folder, refuses_naming, succeeds, text};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -169,4 +169,23 @@ fn advice_that_cannot_be_is_refused() {
         refuses_naming(&[&advise[..], options].concat(), words);
     }
     refuses_naming(&["advise", "slab", "--target", "10%", "--for", "picture"], &["no [camera]"]);
+}
+
+/// A reference of guided paths is told as one, and is another than that of paths where photons know better directions.
+#[test]
+fn a_guided_reference_is_told() {
+    let folder = Folder::new();
+    let (scene, picture) = (folder.file("pane.toml", BELOW_A_PANE), folder.0.path().join("a.exr"));
+    let render = |more: &[&str]| {
+        let start = ["render", text(&scene), "-o", text(&picture), "--samples", "2", "--global", "emit:2000"];
+        let compared = ["--compare", "paths", "--compare-samples", "16"];
+        let said = succeeds(&[&start[..], &compared, more].concat());
+        let of = rows(&picture)["total"].clone();
+        (said, of["reference_guide"].clone(), number(&of, "mean"), number(&of, "reference"))
+    };
+    let (said, guide, mean, paths) = render(&[]);
+    assert!(said.contains("with paths of 16 samples") && guide.is_empty(), "{said}");
+    let (said, guide, same, guided) = render(&["--guide", "20000"]);
+    assert!(said.contains("with guided paths of 16 samples") && guide == "20000", "{said}");
+    assert!(same == mean && guided != paths && guided > 0.0, "{guided} {paths}");
 }

@@ -21,6 +21,27 @@ mod reference;
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
 
+/// A table, and a pane of glass above it, under a small sun: photons know directions to look in that connections do not find.
+const BELOW_A_PANE: &str = r#"interiors = [{ name = "glass", index = 1.5 }]
+[camera]
+position = [0.6, -0.5, 0.5]
+look_at = [0.0, -1.0, 0.0]
+fov = 40
+width = 8
+height = 8
+[[objects]]
+shape = { rectangle = { corner = [-1, -1, 1], u = [2, 0, 0], v = [0, 0, -2] } }
+surface = { lambertian = { reflectance = 0.5 } }
+[[objects]]
+shape = { cuboid = { min = [-1.5, -0.1, -1.5], max = [1.5, 0.1, 1.5] } }
+surface = { dielectric = { inside = "glass" } }
+[[lights]]
+sun = { dir = [0.2, -1, 0.3], irradiance = 1, angular_radius = 3 }
+[[sensors]]
+name = "table"
+measure = { radiance = { origin = [0.6, -0.5, 0.5], dir = [-0.58, -0.5, -0.47] } }
+"#;
+
 /// The command, ready to run.
 fn turbid(arguments: &[&str]) -> Command {
     let mut command = Command::cargo_bin("turbid").unwrap();

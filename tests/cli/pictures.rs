@@ -104,17 +104,6 @@ fn guided_pictures_are_those_of_paths_where_photons_know_no_better() {
         &[&["render", text(&scene), "-o", text(&path)][..], &compared].concat(),
         &["--guide says nothing to --with light; allowed: with --with paths or --compare"],
     );
-    let lamp = room(
-        &folder,
-        "lamp.toml",
-        (
-            "point = { position = [0.0, 1.5, 0.0], power = 10.0 }",
-            "area = { shape = { sphere = { center = [0.0, 1.5, 0.0], radius = 0.1 } }, radiance = 10 }",
-        ),
-    );
-    let compared = ["--compare", "paths", "--compare-samples", "2", "--guide", "3000"];
-    let said = succeeds(&[&["render", text(&lamp), "-o", text(&path)][..], &QUICK, &compared].concat());
-    assert!(said.contains("compared"), "{said}");
 }
 
 /// Sum of a channel over the picture and, of pixels taken for independent, its standard error.

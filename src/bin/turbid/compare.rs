@@ -58,6 +58,7 @@ struct Row {
     blocks_undecided: Option<usize>,
     detectable_relative_bias: Option<f64>,
     reference_samples: u64,
+    reference_guide: Option<u64>,
 }
 
 impl Compared {
@@ -119,12 +120,12 @@ impl Compared {
         Ok(film)
     }
 
-    /// Writes and prints how far a picture is from its reference.
+    /// Writes and prints how far a picture is from its reference, whose paths so many histories led.
     pub fn tell(
         &self,
         output: &Path,
         scene: &Scene,
-        (picture, reference): (&Film, &Film),
+        (picture, reference, guide): (&Film, &Film, Option<u64>),
         error: PictureError<'_>,
     ) -> anyhow::Result<()> {
         let blocks = Blocks::of(picture.width(), picture.height());
@@ -132,7 +133,7 @@ impl Compared {
         let compared = compare(blocks, picture, reference, error, channels);
         let errors = luminance_errors(blocks, picture, reference);
         let scale = error_scale(errors.iter().flatten().copied());
-        let rows = compared.iter().map(|one| row(one, blocks, reference)).collect::<Vec<_>>();
+        let rows = compared.iter().map(|one| row(one, blocks, (reference, guide))).collect::<Vec<_>>();
         let files = self.files(output);
         let [png, csv] = &files[..] else { return Ok(()) };
         let size = (picture.width(), picture.height());
@@ -145,7 +146,8 @@ impl Compared {
         };
         let table = text(&lines(&rows))?;
         print(&format!(
-            "compared       with paths of {} samples a pixel; blocks of {} x {} pixels\n{table}",
+            "compared       with {}paths of {} samples a pixel; blocks of {} x {} pixels\n{table}",
+            if guide.is_some() { "guided " } else { "" },
             reference.samples(),
             blocks.side(),
             blocks.side(),
@@ -178,7 +180,7 @@ fn samples_for(picture: &Film, pilot: &Film) -> u64 {
     (samples.ceil() as u64).clamp(2 * PILOT, MOST)
 }
 
-fn row(one: &Comparison, blocks: Blocks, reference: &Film) -> Row {
+fn row(one: &Comparison, blocks: Blocks, (reference, guide): (&Film, Option<u64>)) -> Row {
     let relative = |x: f64| x / one.reference.abs();
     Row {
         layer: one.layer.map_or("total", |layer| layer.name()),
@@ -197,6 +199,7 @@ fn row(one: &Comparison, blocks: Blocks, reference: &Film) -> Row {
         blocks_undecided: one.test.map(|test| test.undecided),
         detectable_relative_bias: one.test.map(|test| relative(test.smallest)),
         reference_samples: reference.samples(),
+        reference_guide: guide,
     }
 }
 

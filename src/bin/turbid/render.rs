@@ -342,7 +342,7 @@ impl Render {
             _ if made.repetitions >= 2 => PictureError::ByMap(&made.block_means),
             _ => PictureError::Unknown,
         };
-        self.compared.tell(&self.output, scene, (&made.film, &reference), error)
+        self.compared.tell(&self.output, scene, (&made.film, &reference, self.guide), error)
     }
 
     /// Memory that the picture takes beside its maps \[bytes\].
