@@ -4,6 +4,7 @@
 use assert_cmd::Command;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use turbid::exchange::from_mitsuba;
 use turbid::stats::{ALPHA, student_critical};
 
 const SLAB: &str = "\
@@ -145,7 +146,7 @@ fn what_cannot_be_studied_is_refused_in_one_line() {
         ("albedo = [0.5, 0.9]", "albedo = [1.5]", "albedo"),
         ("albedo = [0.5, 0.9]", "albedoo = [0.5]", "unknown key `albedoo`"),
         ("albedo = [0.5, 0.9]", "tau = [1, 2.0, 1.0]", "axes.tau has 1.0 twice"),
-        ("scene = 'slab'", "scene = 'room.xml'", "turbid import"),
+        ("scene = 'slab'", "scene = 'none.xml'", "none.xml: cannot be read"),
         ("[2.0, 2.0, 0.1]", "[2.0, 2.0, -0.1]", "probe 0"),
         ("[2.0, 2.0, 0.1]", "[2.0, 2.0]", "mine.toml:9"),
         ("probes = [[2.0, 2.0, 0.1], [2.0, 2.0, 1.0]]", "sensors = ['nothing']", "no sensor \"nothing\""),
@@ -169,6 +170,32 @@ fn what_cannot_be_studied_is_refused_in_one_line() {
     let run = Command::new(env!("CARGO_BIN_EXE_bias")).current_dir(at).arg("mine.toml").assert().code(2);
     let text = String::from_utf8(run.get_output().stderr.clone()).unwrap();
     assert!(text.contains("bias is one experiment; allowed: study mine.toml"), "{text}");
+}
+
+/// A scene of Mitsuba, with a mesh beside it, is studied as the scene file that is made of it.
+#[test]
+fn a_scene_of_mitsuba_is_that_which_is_made_of_it() {
+    let room = "<scene version='3.0.0'><integrator type='volpath'/>
+        <shape type='cube'><bsdf type='null'/><medium type='homogeneous' name='interior'><rgb name='sigma_t' value='1 2 3'/>
+            <rgb name='albedo' value='0.8 0.7 0.6'/></medium></shape>
+        <shape type='obj'><string name='filename' value='floor.obj'/><bsdf type='diffuse'/></shape>
+        <emitter type='constant'/></scene>";
+    let asks = "scene = 'SCENE'\nphotons = [500, 2000]\nmaps = 8\n[axes]\n'regions.0.g' = [0.0, 0.5]\n[measure]\n\
+        probes = [[0.1, 0.2, 0.3]]\n[[estimators]]\nradius = [0.4]\n";
+    let run = |name: &str| {
+        let (folder, _) = written(&asks.replace("SCENE", name));
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("floor.obj"), "v -2 -1.5 2\nv 2 -1.5 2\nv 0 -1.5 -3\nf 1 2 3\n").unwrap();
+        std::fs::write(at("room.xml"), room).unwrap();
+        let imported = from_mitsuba(&at("room.xml"), "room", &[], false).unwrap();
+        assert!(!imported.files.is_empty());
+        imported.files.iter().for_each(|file| std::fs::write(at(&file.name), &file.bytes).unwrap());
+        std::fs::write(at("room.toml"), imported.scene.to_toml().unwrap()).unwrap();
+        study(folder.path(), &["mine.toml", "--out", "out"]).assert().success();
+        results(folder.path(), "out")
+    };
+    let xml = run("room.xml");
+    assert!(String::from_utf8_lossy(&xml).contains("0.4") && xml == run("room.toml"));
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! Scenes from Python: a dict, TOML text, a file, or the name of a built-in one.
 
 use crate::error::{refuse, refused};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use std::ffi::CString;
 use std::path::{Path, PathBuf};
+use turbid::exchange::{Opened, open};
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Scene, SceneFile, SceneSource};
 
@@ -13,8 +15,7 @@ const DEEPEST: u32 = 32;
 
 /// A scene as it was given.
 pub struct Given {
-    file: SceneFile,
-    folder: PathBuf,
+    opened: Opened,
     /// What messages call it; none for a dict or a text.
     name: Option<String>,
 }
@@ -38,37 +39,40 @@ impl Given {
             // Lines of a text that nobody wrote by hand say nothing.
             SceneFile::read(&text, None).map_err(told)?;
             let file = with(PathBuf::from("scene")).changed(&text).map_err(told)?;
-            return Ok(Given { file, folder: folder.unwrap_or_default(), name: None });
+            return Ok(Given { opened: Opened::new(file, folder.unwrap_or_default()), name: None });
         }
         let word = scene.cast::<PyString>().ok().map(|word| word.to_string());
         if let Some(text) = word.filter(|word| is_text(word)) {
             let file = with(PathBuf::from("scene")).changed(&text).map_err(told)?;
-            return Ok(Given { file, folder: folder.unwrap_or_default(), name: None });
+            return Ok(Given { opened: Opened::new(file, folder.unwrap_or_default()), name: None });
         }
         let mut path: PathBuf = scene.extract().map_err(|_| {
             PyTypeError::new_err(
                 "a scene is a dict, TOML text, the path of a scene file, or a built-in scene's name",
             )
         })?;
-        if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xml")) {
-            let name = path.display();
-            return Err(refuse(format!(
-                "{name} is a scene of Mitsuba; allowed: the scene file that `turbid import {name} -o FILE.toml` makes of it"
-            )));
-        }
         if SceneSource::new(&path).is_standard_input() {
             // Python's own standard input is not for us to read.
             path = Path::new(".").join(path);
         }
         let source = with(path);
-        let file = source.resolve().map_err(told)?;
-        let folder = folder.unwrap_or_else(|| source.folder());
-        Ok(Given { file, folder, name: Some(source.name()) })
+        let mut opened = open(&source, false).map_err(told)?;
+        for note in &opened.notes {
+            let text = CString::new(note.as_str()).unwrap_or_default();
+            PyErr::warn(scene.py(), &scene.py().get_type::<PyUserWarning>(), &text, 1)?;
+        }
+        if let Some(folder) = folder {
+            if opened.is_temporary() {
+                return Err(refuse("folder says nothing to a scene of Mitsuba; allowed: without it"));
+            }
+            opened.folder = folder;
+        }
+        Ok(Given { opened, name: Some(source.name()) })
     }
 
     /// The validated scene, in which light comes to an end.
     pub fn scene(&self) -> PyResult<Scene> {
-        let scene = self.file.scene(&self.folder).and_then(|scene| check_end(&scene).map(|()| scene));
+        let scene = self.opened.scene().and_then(|scene| check_end(&scene).map(|()| scene));
         scene.map_err(|error| refused(&self.named(error.into())))
     }
 
@@ -185,9 +189,15 @@ pub fn resolve<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let given = Given::read(scene, parameters, folder)?;
     given.scene()?;
-    let text = given.file.to_toml().map_err(|error| refuse(error.to_string()))?;
+    let Opened { file, folder, .. } = &given.opened;
+    if given.opened.is_temporary() && file.files().is_ok_and(|files| !files.is_empty()) {
+        return Err(refused(&given.named(anyhow::anyhow!(
+            "a scene of Mitsuba with files beside it; allowed here: the scene file that `turbid import` writes"
+        ))));
+    }
+    let text = file.to_toml().map_err(|error| refuse(error.to_string()))?;
     let table: toml::Table = toml::from_str(&text).map_err(|error| refuse(error.to_string()))?;
-    object(py, &toml::Value::Table(table), &given.folder, "")
+    object(py, &toml::Value::Table(table), folder, "")
 }
 
 /// The built-in scenes: name, what it is, its parameters with their defaults and meanings as TOML.

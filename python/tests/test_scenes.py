@@ -72,6 +72,32 @@ def test_files_of_a_scene_are_found(tmp_path, monkeypatch):
         numbers(values)
 
 
+MITSUBA = """<scene version="3.0.0"><integrator type="volpath"/>
+<sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
+<lookat origin="0, 0, 5" target="0, 0, 0" up="0, 1, 0"/></transform>
+<film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="6"/></film></sensor>
+<shape type="cube"><bsdf type="null"/><medium type="homogeneous" name="interior"><rgb name="sigma_t" value="1 2 3"/>
+<rgb name="albedo" value="0.8 0.7 0.6"/></medium></shape>FLOOR<emitter type="constant"/></scene>"""
+
+
+def test_scenes_of_mitsuba_are_read(tmp_path, turbid_program):
+    """As the program reads them, with and without files beside them."""
+    floor = '<shape type="obj"><string name="filename" value="floor.obj"/><bsdf type="diffuse"/></shape>'
+    (tmp_path / "floor.obj").write_text("v -2 -1.5 2\nv 2 -1.5 2\nv 0 -1.5 -3\nf 1 2 3\n")
+    for name, more in ("fog", ""), ("room", floor):
+        file = tmp_path / f"{name}.xml"
+        file.write_text(MITSUBA.replace("FLOOR", more))
+        done = turbid_program.run("import", file, "-o", f"{name}.toml", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        pictures = [turbid.render(scene, "paths", samples=2).radiance for scene in (file, tmp_path / f"{name}.toml")]
+        assert pictures[0].mean() > 0 and np.array_equal(*pictures)
+        with pytest.raises(turbid.Error, match="folder says nothing"):
+            turbid.render(file, "paths", folder=tmp_path)
+    assert turbid.scene(tmp_path / "fog.xml") == turbid.scene(tmp_path / "fog.toml")
+    with pytest.raises(turbid.Error, match="turbid import"):
+        turbid.scene(tmp_path / "room.xml")
+
+
 @pytest.mark.parametrize(
     "old, new",
     [

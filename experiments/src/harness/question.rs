@@ -4,6 +4,8 @@ use super::Digest;
 use anyhow::{Context, ensure};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use turbid::exchange::open;
+use turbid::scene::SceneSource;
 
 /// A study file, as text; what it means is for the experiment that it is put to.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,6 +64,18 @@ impl Question {
             ensure!(file.as_path() != path, "{} names itself", path.display());
             let digest = Digest::of_file(file).with_context(|| format!("cannot read {}", file.display()))?;
             parts.push(digest.to_string().into_bytes());
+        }
+        // A scene of Mitsuba names its files in its own way, and files that these name.
+        let is_of_mitsuba = |file: &&PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml"));
+        for scene in named.iter().filter(is_of_mitsuba) {
+            // What is wrong with it is told where it is read.
+            let Ok(opened) = open(&SceneSource::new(scene), false) else { continue };
+            for name in opened.file.files()? {
+                let file = opened.folder.join(&name);
+                let digest =
+                    Digest::of_file(&file).with_context(|| format!("{}: {name}", scene.display()))?;
+                parts.push(digest.to_string().into_bytes());
+            }
         }
         let digest = Digest::of(&parts.join(&b"\n"[..])).to_string();
         let title = table.get("title").and_then(|title| title.as_str()).map(turbid::output::one_line);
@@ -124,5 +138,17 @@ mod tests {
         write("scene.toml", "[[regions]]\nshape = { mesh = { file = 'a.ply' } } # same\n");
         assert_ne!(read().digest, second.digest);
         assert!(Question::read(&folder.path().join("none.toml")).is_err());
+        // Those of a scene of Mitsuba too.
+        write("study.toml", "scene = 'scene.xml'\n");
+        write(
+            "scene.xml",
+            "<scene version='3.0.0'><integrator type='volpath'/><shape type='obj'><string name='filename' value='a.obj'/>\
+             <bsdf type='diffuse'/></shape><emitter type='constant'/></scene>",
+        );
+        write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        let third = read();
+        assert_eq!(read(), third);
+        write("a.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+        assert_ne!(read().digest, third.digest);
     }
 }

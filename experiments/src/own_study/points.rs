@@ -3,12 +3,13 @@
 use super::file::{MeasureFile, StudyFile, StudyScene};
 use super::picture::Picture;
 use super::place::Place;
-use crate::harness::Unit;
+use crate::harness::{Unit, say};
 use crate::setups::asked;
 use anyhow::{Context, bail, ensure};
 use std::collections::BTreeSet;
 use std::path::Path;
 use turbid::estimators::{BeamBlur, BeamLength, Estimator, RayEnds};
+use turbid::exchange::{Opened, open};
 use turbid::integrators::mapper::scene_size;
 use turbid::output::one_line;
 use turbid::photons::check_end;
@@ -70,12 +71,6 @@ fn number(value: &toml::Value) -> Option<f64> {
 }
 
 fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Point> {
-    if let StudyScene::Name(name) = &study.scene {
-        ensure!(
-            !name.to_lowercase().ends_with(".xml"),
-            "scene is {name:?}; allowed: a scene file, which `turbid import` makes of a scene of Mitsuba"
-        );
-    }
     let path = match &study.scene {
         StudyScene::Name(name) if BUILTIN.iter().any(|builtin| builtin.name == name) => name.into(),
         StudyScene::Name(name) => folder.join(name),
@@ -88,16 +83,20 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
         source = source.with(key.as_str(), value.clone());
         values.push((key.clone(), word(value)));
     }
-    let mut file = match &study.scene {
-        StudyScene::Name(_) => source.resolve(),
+    let mut opened = match &study.scene {
+        StudyScene::Name(_) => open(&source, false),
         StudyScene::Table(table) => {
             let text = toml::to_string(table)?;
             // Its lines are not those of the study's file.
-            SceneFile::read(&text, None).and_then(|_| source.changed(&text))
+            let file = SceneFile::read(&text, None).and_then(|_| source.changed(&text));
+            file.map(|file| Opened::new(file, source.folder()))
         }
     }
     .context("scene")?;
-    let measure = &study.measure;
+    if number == 0 {
+        opened.notes.iter().for_each(|note| say(&format!("{}: {note}", source.name())));
+    }
+    let (file, measure) = (&mut opened.file, &study.measure);
     let left_out = choose(measure, &mut file.sensors).context("measure.sensors")?;
     file.sensors.extend(extra(measure).context("measure")?);
     if let Some(picture) = &measure.picture {
@@ -106,7 +105,7 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
             "measure.picture stands alone; allowed beside it: no sensors, probes, lattice or rays"
         );
         file.sensors.clear();
-        let scene = asked(file.scene(&source.folder()).with_context(|| source.name())?);
+        let scene = asked(opened.scene().with_context(|| source.name())?);
         check_end(&scene).with_context(|| source.name())?;
         let picture = Picture::new(&scene, picture).context("measure")?;
         let (places, estimators) = (picture.places(), study.estimators(0.1 * scene_size(&scene))?);
@@ -132,7 +131,7 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
         "{}: nothing to measure: no sensor of fluence or radiance, and measure has no probes, lattice or rays",
         source.name()
     );
-    let scene = asked(file.scene(&source.folder()).with_context(|| source.name())?);
+    let scene = asked(opened.scene().with_context(|| source.name())?);
     check_end(&scene).with_context(|| source.name())?;
     let places = places(&scene).context("measure")?;
     let estimators = study.estimators(usual_reach(&scene))?;

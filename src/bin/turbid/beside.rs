@@ -1,10 +1,10 @@
 //! Files that belong together: a scene, and what stands beside it.
 
 use super::shared::print;
-use anyhow::{Context, bail};
+use anyhow::bail;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use turbid::exchange::{Beside, Imported};
+use turbid::exchange::Beside;
 use turbid::output::{check_writable, write_atomically};
 
 /// Folder and stem of a file that others are to stand beside, where its name ends in one of these.
@@ -32,13 +32,4 @@ pub fn write_beside(folder: &Path, files: &[Beside], path: &Path, text: &str) ->
     write_atomically(path, |out| out.write_all(text.as_bytes()))?;
     writeln!(written, "wrote {}", path.display())?;
     print(&written)
-}
-
-/// Writes the files beside a scene to a folder of their own, in which the scene can be read.
-pub fn in_folder(imported: &Imported) -> anyhow::Result<tempfile::TempDir> {
-    let folder = tempfile::tempdir().context("a folder for the parts of the scene")?;
-    for file in &imported.files {
-        write_atomically(folder.path().join(&file.name), |out| out.write_all(&file.bytes))?;
-    }
-    Ok(folder)
 }

@@ -1,6 +1,6 @@
 //! `turbid import`: a scene of another program as a scene file.
 
-use super::beside::{folder_and_stem, in_folder, write_beside};
+use super::beside::{folder_and_stem, write_beside};
 use super::shared::note;
 use anyhow::{Context, bail};
 use std::path::{Path, PathBuf};
@@ -48,7 +48,7 @@ impl Import {
             given.push((name.to_string(), value.to_string()));
         }
         let imported = from_mitsuba(&self.file, stem, &given, self.confined)?;
-        let parts = in_folder(&imported)?;
+        let parts = imported.in_folder()?;
         let scene = imported.scene.scene(parts.path()).with_context(|| self.file.display().to_string())?;
         check_end(&scene).with_context(|| self.file.display().to_string())?;
         imported.notes.iter().try_for_each(|text| note(text))?;

@@ -1,10 +1,9 @@
 //! Scenes from a file or by name, with `--set` on top.
 
-use super::beside::in_folder;
 use super::shared::note;
 use anyhow::Context;
 use std::path::{Path, PathBuf};
-use turbid::exchange::from_mitsuba;
+use turbid::exchange::open;
 use turbid::output::is_same_file;
 use turbid::photons::check_end;
 use turbid::scene::{Scene, SceneFile, SceneSource};
@@ -86,19 +85,12 @@ impl Source {
         &self,
         look: impl FnOnce(&SceneFile, &Path) -> anyhow::Result<T>,
     ) -> anyhow::Result<(SceneFile, Scene, T)> {
-        if self.scene.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")) {
-            let imported = from_mitsuba(&self.scene, "scene", &[], self.confined)?;
-            imported.notes.iter().try_for_each(|text| note(text))?;
-            let folder = in_folder(&imported)?;
-            let file = self.source()?.changed(&imported.scene.to_toml()?)?;
-            let (file, scene) = self.scene_in(file, folder.path())?;
-            let found = look(&file, folder.path())?;
-            return Ok((file, scene, found));
-        }
-        let source = self.source()?;
-        let (file, scene) = self.scene_in(source.resolve()?, &source.folder())?;
-        let found = look(&file, &source.folder())?;
-        Ok((file, scene, found))
+        let opened = open(&self.source()?, self.confined)?;
+        opened.notes.iter().try_for_each(|text| note(text))?;
+        let scene = opened.scene().with_context(|| self.name())?;
+        check_end(&scene).with_context(|| self.name())?;
+        let found = look(&opened.file, &opened.folder)?;
+        Ok((opened.file, scene, found))
     }
 
     /// The scene file with every change made.
@@ -108,14 +100,5 @@ impl Source {
 
     fn source(&self) -> turbid::Result<SceneSource> {
         self.sets.iter().try_fold(SceneSource::new(&self.scene), |source, set| source.with_set(set))
-    }
-
-    fn scene_in(&self, file: SceneFile, folder: &Path) -> anyhow::Result<(SceneFile, Scene)> {
-        if self.confined {
-            file.check_confined(folder).with_context(|| self.name())?;
-        }
-        let scene = file.scene(folder).with_context(|| self.name())?;
-        check_end(&scene).with_context(|| self.name())?;
-        Ok((file, scene))
     }
 }
