@@ -22,7 +22,7 @@ use turbid::sensor::{
     Measurement, PathSettings, PhotonSettings, Streams, TallySettings, by_bidirectional_paths,
     by_guided_paths, by_photons_in_passes, by_tallies, check_paths, forecast, row_bytes, tally_bytes,
 };
-use turbid::transport::{Guide, Progress};
+use turbid::transport::{Progress, WeightWindows};
 
 /// Who measures.
 #[derive(Clone, Copy, PartialEq)]
@@ -101,7 +101,7 @@ impl Request {
         let bins = bins(scene);
         memory::check(|| format!("{bins} bins"), row_bytes(scene))?;
         check_paths(scene)?;
-        let windows = weight_windows.then(|| Guide::new(scene)).transpose()?;
+        let windows = weight_windows.then(|| WeightWindows::new(scene)).transpose()?;
         let directions = learn(scene, guide, Streams { seed, replicate: 0 }, watch)?;
         let guides = Guides { windows: windows.as_ref(), directions: directions.as_ref() };
         watch.stage("paths", samples.saturating_mul(bins));

@@ -23,8 +23,8 @@ use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, Distances, Flags, Guide, Guided, Lobe, Roulette, Step, Visitor, Walker, collected, connection,
-    emission, span, transmittance, walk,
+    Arrival, Distances, Flags, Lobe, Roulette, Step, Visitor, Walker, WeightWindows, Windowed, collected,
+    connection, emission, span, transmittance, walk,
 };
 use glam::DVec3;
 
@@ -55,7 +55,7 @@ impl Rays {
 pub struct Guides<'a> {
     /// Weight windows, which split paths on their way to the lights and end them elsewhere: where light is found through many mean
     /// free paths.
-    pub windows: Option<&'a Guide>,
+    pub windows: Option<&'a WeightWindows>,
     /// Where photons came from: where light is found by connections from few places only, behind glass and by way of mirrors.
     pub directions: Option<&'a Directions>,
 }
@@ -76,7 +76,7 @@ pub(super) struct PathVisitor<'a> {
     /// Distance to the body ahead of the present ray \[L\].
     end: f64,
     /// The games by which it is split and ended.
-    guided: Option<Guided<'a>>,
+    windowed: Option<Windowed<'a>>,
     /// Where light comes from.
     directions: Option<&'a Directions>,
     /// Orders above which light is left out of lights that do not fill space, if it is: of those that rays meet, and of delta lights.
@@ -93,7 +93,7 @@ impl<'a> PathVisitor<'a> {
             first: Flags::NONE,
             specular_at: None,
             end: f64::INFINITY,
-            guided: None,
+            windowed: None,
             directions: None,
             joined_above: None,
         }
@@ -295,8 +295,8 @@ fn flight_pdf(scene: &Scene, walker: &Walker, (t, medium): (f64, &Medium), ray: 
 }
 
 impl Visitor for PathVisitor<'_> {
-    fn guided(&self) -> Option<Guided<'_>> {
-        self.guided
+    fn windowed(&self) -> Option<Windowed<'_>> {
+        self.windowed
     }
 
     #[inline(always)]
@@ -537,7 +537,7 @@ fn follow<'a>(mut visitor: PathVisitor<'a>, start: Walker, guides: Guides<'a>, s
     let roulette =
         Roulette::Below(if guides.windows.is_some() { 0.0 } else { ROULETTE * start.weight.max() });
     let place = (start.ray.origin, start.interior);
-    visitor.guided = guides.windows.map(|guide| Guided::new(guide, scene, place, start.weight));
+    visitor.windowed = guides.windows.map(|windows| Windowed::new(windows, scene, place, start.weight));
     visitor.directions = guides.directions;
     walk(scene, start, roulette, limit, stream, &mut visitor);
     visitor.rays

@@ -1,6 +1,6 @@
 //! Who watches a walk, and what it is told.
 
-use super::{Flags, Guided, Lobe};
+use super::{Flags, Lobe, Windowed};
 use crate::Spectrum;
 use crate::math::Ray;
 use crate::rng::Stream;
@@ -90,7 +90,7 @@ pub trait Visitor {
 
     /// The games by which histories are split and ended on their way, beside roulette; none for most.
     #[inline(always)]
-    fn guided(&self) -> Option<Guided<'_>> {
+    fn windowed(&self) -> Option<Windowed<'_>> {
         None
     }
 

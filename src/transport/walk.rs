@@ -192,7 +192,7 @@ fn look_ahead<V: Visitor>(
     Some(hit)
 }
 
-/// A flight to a collision or to the end of the ray; with games on the way, if the visitor is guided: then none where they are lost.
+/// A flight to a collision or to the end of the ray; with games on the way, if the visitor has weight windows: then none where they are lost.
 ///
 /// A flight forgets how far it came: at each stop what goes on flies on from there, each for itself. All of the ray was
 /// looked along before.
@@ -205,12 +205,12 @@ fn fly<V: Visitor>(
     stream: &mut Stream,
     visitor: &V,
 ) -> Option<Flight> {
-    let Some(guided) = visitor.guided() else {
+    let Some(windowed) = visitor.windowed() else {
         return Some(free_flight(scene, &walker.ray, end, walker.interior, walker.weight, forced, stream));
     };
     loop {
         let (ray, interior) = (walker.ray, walker.interior);
-        let (copies, factor) = guided.copies(&ray, flown, interior, walker.weight, || stream.unit());
+        let (copies, factor) = windowed.copies(&ray, flown, interior, walker.weight, || stream.unit());
         let (copies, factor) =
             if split.count < MOST_SPLIT { (copies, factor) } else { (copies.min(1), factor.max(1.0)) };
         walker.weight *= factor;
@@ -221,7 +221,7 @@ fn fly<V: Visitor>(
         if copies == 0 {
             return None;
         }
-        let stop = guided.stop(&ray, (flown, end), interior);
+        let stop = windowed.stop(&ray, (flown, end), interior);
         let onward = Ray::new(ray.at(flown), ray.dir);
         match free_flight(scene, &onward, stop - flown, interior, walker.weight, false, stream) {
             Flight::Collision { t, medium, weight } => {

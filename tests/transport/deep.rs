@@ -14,7 +14,7 @@ use turbid::light::{Light, VolumeSource};
 use turbid::scene::{Orders, Quantity, Scene, SceneParts, Sensor};
 use turbid::sensor::{NoError, PathSettings, by_paths, sample_guided};
 use turbid::stats::Moments;
-use turbid::transport::{Guide, NoProgress};
+use turbid::transport::{NoProgress, WeightWindows};
 
 /// Places along the diagonal and the fluences of GMVP there, known to 0.1 % and 0.4 %.
 const SHALLOW: (f64, f64) = (55.0, 3.02145e-2);
@@ -75,7 +75,7 @@ fn enough_paths_have_their_error() {
 }
 
 fn guided(scene: &Scene, quantity: &Quantity, n: u64, seed: u64) -> Moments {
-    let windows = Guide::new(scene).unwrap();
+    let windows = WeightWindows::new(scene).unwrap();
     let guides = Guides { windows: Some(&windows), directions: None };
     let moments = numbers(n, seed, |s| sample_guided(scene, quantity, Orders::ALL, guides, s).0[0]);
     let relative = moments.std_error() / moments.mean();

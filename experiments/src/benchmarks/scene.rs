@@ -13,7 +13,7 @@ use turbid::sensor::{
     Measurement, PathSettings, PhotonSettings, TallySettings, by_guided_paths, by_paths, by_photons,
     by_tallies,
 };
-use turbid::transport::{Guide, NoProgress};
+use turbid::transport::{NoProgress, WeightWindows};
 use turbid_analytic::Value;
 
 /// Larger tables are none.
@@ -106,7 +106,7 @@ impl Bench {
     pub fn windowed_paths(&self, scene: &Scene, samples: u64) -> anyhow::Result<Vec<Measurement>> {
         let settings =
             PathSettings { samples, seed: self.seed, replicate: self.replicate(), orders: Orders::ALL };
-        let windows = Guide::new(scene)?;
+        let windows = WeightWindows::new(scene)?;
         let guides = Guides { windows: Some(&windows), directions: None };
         Ok(by_guided_paths(scene, &settings, guides, &NoProgress)?)
     }

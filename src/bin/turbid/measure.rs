@@ -27,7 +27,7 @@ use turbid::sensor::{
     by_bidirectional_paths, by_given_photons, by_guided_paths, by_photons_in_passes, by_tallies, check_paths,
     forecast, given_bytes, row_bytes, tally_bytes, usual_reach,
 };
-use turbid::transport::Guide;
+use turbid::transport::WeightWindows;
 
 /// Measure the sensors of a scene by paths, bidirectional paths, photons or light tracing.
 ///
@@ -393,7 +393,7 @@ impl Measure {
         self.check_bins(scene, row_bytes(scene))?;
         let bins: u64 = scene.sensors().iter().map(|s| s.binned().map_or(1, Binned::bins) as u64).sum();
         check_paths(scene).with_context(|| self.source.name())?;
-        let windows = self.weight_windows.then(|| Guide::new(scene)).transpose();
+        let windows = self.weight_windows.then(|| WeightWindows::new(scene)).transpose();
         let windows = windows.with_context(|| self.source.name())?;
         let streams = Streams { seed: self.seed, replicate: 0 };
         let directions = self.guide.map(|histories| learn(scene, histories, streams)).transpose();

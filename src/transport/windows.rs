@@ -40,7 +40,7 @@ pub fn window(ratio: f64, unit: impl FnOnce() -> f64) -> (usize, f64) {
 /// sigma_t min(1, sqrt(3 (1 - albedo) (1 - albedo g))), whatever surfaces stand between. A wrong guess costs time, and no more:
 /// what is split or ended keeps its mean.
 #[derive(Debug, Clone)]
-pub struct Guide {
+pub struct WeightWindows {
     lights: Vec<(Aim, f64)>,
     /// By medium, its highest rate of decay [1/L].
     rates: Vec<f64>,
@@ -55,7 +55,7 @@ enum Aim {
     Direction(DVec3),
 }
 
-impl Guide {
+impl WeightWindows {
     /// The guess for a scene.
     ///
     /// # Errors
@@ -73,7 +73,7 @@ impl Guide {
         let lights = lights.ok_or_else(|| {
             Error::Scene("weight windows need lights in a place or from a direction: isotropic light into a body, and sources in a slab without end, are on all sides".into())
         })?;
-        Ok(Guide { lights, rates })
+        Ok(WeightWindows { lights, rates })
     }
 
     /// Where a light is, and the fluence that it brings to a distance of 1, or to everywhere.
@@ -149,8 +149,8 @@ impl Guide {
 
 /// The games of the histories of one start.
 #[derive(Debug, Clone, Copy)]
-pub struct Guided<'a> {
-    guide: &'a Guide,
+pub struct Windowed<'a> {
+    windows: &'a WeightWindows,
     scene: &'a Scene,
     /// The logarithm of weight times fluence that histories keep.
     kept: f64,
@@ -158,13 +158,18 @@ pub struct Guided<'a> {
     is_blind: bool,
 }
 
-impl<'a> Guided<'a> {
+impl<'a> Windowed<'a> {
     /// For histories that start at a place with a weight.
-    pub fn new(guide: &'a Guide, scene: &'a Scene, (p, interior): (DVec3, usize), weight: Spectrum) -> Self {
-        let fluence = guide.ln_fluence(scene, p, interior);
+    pub fn new(
+        windows: &'a WeightWindows,
+        scene: &'a Scene,
+        (p, interior): (DVec3, usize),
+        weight: Spectrum,
+    ) -> Self {
+        let fluence = windows.ln_fluence(scene, p, interior);
         let is_blind = !fluence.is_finite();
         let kept = ln(weight.mean()) + if is_blind { 0.0 } else { fluence };
-        Guided { guide, scene, kept, is_blind }
+        Windowed { windows, scene, kept, is_blind }
     }
 
     /// How many histories go on along a ray from `flown` on, and the factor on the weight of each.
@@ -177,12 +182,12 @@ impl<'a> Guided<'a> {
         unit: impl FnOnce() -> f64,
     ) -> (usize, f64) {
         let fluence =
-            if self.is_blind { 0.0 } else { self.guide.ln_fluence(self.scene, ray.at(flown), interior) };
+            if self.is_blind { 0.0 } else { self.windows.ln_fluence(self.scene, ray.at(flown), interior) };
         window(exp(ln(weight.mean()) + fluence - self.kept), unit)
     }
 
     /// How far it goes before the next game.
     pub(super) fn stop(&self, ray: &Ray, part: (f64, f64), interior: usize) -> f64 {
-        self.guide.stop(self.scene, ray, part, interior)
+        self.windows.stop(self.scene, ray, part, interior)
     }
 }
