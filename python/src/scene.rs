@@ -59,7 +59,7 @@ impl Given {
         let mut opened = open(&source, false).map_err(told)?;
         for note in &opened.notes {
             let text = CString::new(note.as_str()).unwrap_or_default();
-            PyErr::warn(scene.py(), &scene.py().get_type::<PyUserWarning>(), &text, 1)?;
+            PyErr::warn(scene.py(), &scene.py().get_type::<PyUserWarning>(), &text, 2)?;
         }
         if let Some(folder) = folder {
             if opened.is_temporary() {
