@@ -14,6 +14,8 @@ pub struct Opened {
     pub file: SceneFile,
     /// The folder that file names in it are relative to.
     pub folder: PathBuf,
+    /// The files that it was read from, and those that it names.
+    pub read: Vec<PathBuf>,
     /// What is not quite the same as in a scene of Mitsuba.
     pub notes: Vec<String>,
     parts: Option<TempDir>,
@@ -22,7 +24,7 @@ pub struct Opened {
 impl Opened {
     /// A scene file whose files are in a folder.
     pub fn new(file: SceneFile, folder: PathBuf) -> Self {
-        Opened { file, folder, notes: Vec::new(), parts: None }
+        Opened { file, folder, read: Vec::new(), notes: Vec::new(), parts: None }
     }
 
     /// Whether the folder is a temporary one, which goes with this value.
@@ -50,9 +52,14 @@ pub fn open(source: &SceneSource, is_confined: bool) -> Result<Opened> {
         let text = imported.scene.to_toml().map_err(|error| Error::Scene(error.to_string()))?;
         let parts = imported.in_folder()?;
         let (file, folder) = (source.changed(&text)?, parts.path().to_path_buf());
-        Opened { file, folder, notes: imported.notes, parts: Some(parts) }
+        Opened { file, folder, read: imported.read, notes: imported.notes, parts: Some(parts) }
     } else {
-        Opened::new(source.resolve()?, source.folder())
+        let mut opened = Opened::new(source.resolve()?, source.folder());
+        if !source.is_builtin() && !source.is_standard_input() {
+            opened.read.push(source.file().to_path_buf());
+        }
+        opened.read.extend(opened.file.files()?.iter().map(|name| opened.folder.join(name)));
+        opened
     };
     if is_confined {
         opened.file.check_confined(&opened.folder).map_err(|error| error.within(&source.name()))?;

@@ -21,7 +21,8 @@ pub struct WriteError {
 ///
 /// The content goes to a temporary file in the same folder, is brought to the disk, and is then renamed. The
 /// permissions are those of any new file (0o666 minus the mask). A symbolic link keeps pointing where it did, whether
-/// something is there or not; a path that is no regular file, such as a device or a pipe, is written directly.
+/// something is there or not; a path that is no regular file, such as a device or a pipe, is written directly. A file that is
+/// protected from writing is left.
 ///
 /// What a killed run left in the folder, temporary files that no process holds, is removed.
 ///
@@ -116,6 +117,14 @@ fn place(path: &Path) -> io::Result<Place> {
         Ok(found) if found.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
         // Where links such as /dev/stdout lead to has a name that cannot be opened.
         Ok(found) if !found.is_file() => Ok(Place::Direct(path.to_path_buf())),
+        // What is protected from writing is not replaced either, though its folder would allow that.
+        Ok(found) if found.permissions().readonly() => {
+            Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is protected from writing"))
+        }
+        Ok(_) => {
+            let _writable = fs::OpenOptions::new().append(true).open(path)?;
+            Ok(Place::Renamed(target(path)?))
+        }
         // A name that is too long, a folder that is none.
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(Place::Renamed(target(path)?)),
@@ -330,6 +339,16 @@ mod tests {
         assert!(says(folder.path()).ends_with("it is a folder"));
         let missing = folder.path().join("none/a.csv");
         assert!(says(&missing).starts_with(&format!("cannot write {}: No such file", missing.display())));
+        let protect = |is_protected: bool| {
+            let mut permissions = fs::metadata(&path).unwrap().permissions();
+            permissions.set_readonly(is_protected);
+            fs::set_permissions(&path, permissions).unwrap();
+        };
+        protect(true);
+        assert!(says(&path).ends_with("it is protected from writing"), "{}", says(&path));
+        assert!(write_atomically(&path, |w| w.write_all(b"new")).is_err());
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        protect(false);
         let long = folder.path().join("x".repeat(300));
         assert!(says(&long).contains("name too long"), "{}", says(&long));
         assert!(says(&path.join("b")).contains("Not a directory"), "{}", says(&path.join("b")));

@@ -217,7 +217,7 @@ fn bins_where_light_from_outside_has_not_been() {
     let scene = format!("{slab}{beam}[[sensors]]\nname = \"here\"\nmeasure = {{ {} }}\n", voxels(0.0, 1.0));
     let file = folder.file("scene.toml", &scene);
     let onto = ["measure", text(&file), "--with", "light", "--photons", "100", "--npy", text(&file)];
-    refuses_naming(&onto, &["--npy names the scene's own file"]);
+    refuses_naming(&onto, &["--npy names a file of the scene"]);
     assert_eq!(std::fs::read_to_string(&file).unwrap(), scene);
 }
 

@@ -89,7 +89,7 @@ fn tables_go_to_files() {
     let scene = folder.file("slab.toml", &succeeds(&["scenes", "slab", "--resolved"]));
     let before = std::fs::read_to_string(&scene).unwrap();
     let onto = ["measure", text(&scene), "--with", "paths", "--samples", "1000000000", "--out"];
-    refuses_naming(&[&onto[..], &[text(&scene)]].concat(), &["--out names the scene's own file"]);
+    refuses_naming(&[&onto[..], &[text(&scene)]].concat(), &["--out names a file of the scene"]);
     assert_eq!(std::fs::read_to_string(&scene).unwrap(), before);
     let nowhere = folder.0.path().join("none").join("table.csv");
     refuses_naming(&[&onto[..], &[text(&nowhere)]].concat(), &["cannot write ", "No such file"]);

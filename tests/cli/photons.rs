@@ -620,7 +620,7 @@ fn photons_go_into_files() {
         &["photons of media takes about", "allowed: --photons "],
     );
     let scene = folder.file("scene.npy", &succeeds(&["scenes", "slab", "--resolved"]));
-    refuses_naming(&["map", text(&scene), "--npy", text(&scene)], &["--npy names the scene's own file"]);
+    refuses_naming(&["map", text(&scene), "--npy", text(&scene)], &["--npy names a file of the scene"]);
     let both = at(&folder, "b.ply");
     refuses_naming(&["map", "slab", "--npy", text(&both), "--ply", text(&both)], &["lead to one file"]);
     let bytes = |threads: &str| {

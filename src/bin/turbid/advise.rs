@@ -89,7 +89,7 @@ fn parse_target(text: &str) -> Result<f64, String> {
 impl Advise {
     /// Advises and prints.
     pub fn run(self, given: &ArgMatches) -> anyhow::Result<()> {
-        let scene = self.source.load()?;
+        let scene = self.source.load(&[])?;
         let has_probe = scene.sensors().iter().any(|sensor| matches!(sensor.quantity, Quantity::Fluence(_)));
         let is_picture = scene.camera().is_some() && !has_probe;
         let subject = self.subject.unwrap_or(if is_picture { Subject::Picture } else { Subject::Probes });

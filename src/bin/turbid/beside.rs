@@ -5,7 +5,7 @@ use anyhow::bail;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use turbid::exchange::Beside;
-use turbid::output::{check_writable, write_atomically};
+use turbid::output::{check_writable, is_same_file, write_atomically};
 
 /// Folder and stem of a file that others are to stand beside, where its name ends in one of these.
 pub fn folder_and_stem<'a>(
@@ -20,10 +20,32 @@ pub fn folder_and_stem<'a>(
     }
 }
 
-/// Writes a file and those beside it, which it names, before it; says what was written.
-pub fn write_beside(folder: &Path, files: &[Beside], path: &Path, text: &str) -> anyhow::Result<()> {
+/// Refuses an output over one of the files that were read.
+pub fn refuse_read(option: &str, output: &Path, read: &[PathBuf]) -> anyhow::Result<()> {
+    match read.iter().find(|file| is_same_file(file, output).unwrap_or(false)) {
+        None => Ok(()),
+        Some(file) if file.as_path() == output => {
+            bail!("{option} names a file of the scene, {}; allowed: another", output.display())
+        }
+        Some(file) => bail!(
+            "{option} names {}, which is {}, a file of the scene; allowed: another",
+            output.display(),
+            file.display()
+        ),
+    }
+}
+
+/// Writes a file and those beside it, which it names, before it, but over none of those that were read; says what was written.
+pub fn write_beside(
+    (option, path, text): (&str, &Path, &str),
+    (folder, files): (&Path, &[Beside]),
+    read: &[PathBuf],
+) -> anyhow::Result<()> {
     let mut written = String::new();
     let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(&file.name)).collect();
+    for output in paths.iter().map(PathBuf::as_path).chain([path]) {
+        refuse_read(option, output, read)?;
+    }
     paths.iter().map(PathBuf::as_path).chain([path]).try_for_each(check_writable)?;
     for (file, beside) in files.iter().zip(&paths) {
         write_atomically(beside, |out| out.write_all(&file.bytes))?;

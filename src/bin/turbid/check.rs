@@ -14,7 +14,7 @@ pub struct Check {
 impl Check {
     /// Prints the plan.
     pub fn run(self) -> anyhow::Result<()> {
-        let scene = self.source.load()?;
+        let scene = self.source.load(&[])?;
         let mut text = String::new();
         writeln!(
             text,

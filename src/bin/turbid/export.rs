@@ -24,9 +24,9 @@ impl Export {
     /// Writes the files.
     pub fn run(self) -> anyhow::Result<()> {
         let (folder, stem) = folder_and_stem("--mitsuba", &self.mitsuba, "xml")?;
-        let scene = self.source.load()?;
+        let (scene, read) = self.source.load_with_files()?;
         let exported = to_mitsuba(&scene, stem).with_context(|| self.source.name())?;
         exported.notes.iter().try_for_each(|text| note(text))?;
-        write_beside(&folder, &exported.files, &self.mitsuba, &exported.text)
+        write_beside(("--mitsuba", &self.mitsuba, &exported.text), (&folder, &exported.files), &read)
     }
 }

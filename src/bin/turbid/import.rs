@@ -3,7 +3,7 @@
 use super::beside::{folder_and_stem, write_beside};
 use super::shared::note;
 use anyhow::{Context, bail};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use turbid::exchange::from_mitsuba;
 use turbid::photons::check_end;
 
@@ -27,19 +27,10 @@ pub struct Import {
     confined: bool,
 }
 
-/// Refuses files that would be written over one that is read.
-fn check_other(path: &Path, name: &str) -> anyhow::Result<()> {
-    if turbid::output::is_same_file(path, Path::new(name)).unwrap_or(false) {
-        bail!("--output {name} is the file that is read; allowed: another one");
-    }
-    Ok(())
-}
-
 impl Import {
     /// Reads, checks, writes.
     pub fn run(self) -> anyhow::Result<()> {
         let (folder, stem) = folder_and_stem("--output", &self.output, "toml")?;
-        check_other(&self.file, &self.output.display().to_string())?;
         let mut given = Vec::new();
         for define in &self.define {
             let Some((name, value)) = define.split_once('=') else {
@@ -52,6 +43,7 @@ impl Import {
         let scene = imported.scene.scene(parts.path()).with_context(|| self.file.display().to_string())?;
         check_end(&scene).with_context(|| self.file.display().to_string())?;
         imported.notes.iter().try_for_each(|text| note(text))?;
-        write_beside(&folder, &imported.files, &self.output, &imported.scene.to_toml()?)
+        let text = imported.scene.to_toml()?;
+        write_beside(("--output", &self.output, &text), (&folder, &imported.files), &imported.read)
     }
 }

@@ -1,15 +1,13 @@
 //! Scenes from a file or by name, with `--set` on top.
 
+use super::beside::refuse_read;
+use super::digest::Digest;
 use super::shared::note;
 use anyhow::Context;
 use std::path::{Path, PathBuf};
-use turbid::exchange::open;
-use turbid::output::is_same_file;
+use turbid::exchange::{Opened, open};
 use turbid::photons::check_end;
 use turbid::scene::{Scene, SceneFile, SceneSource};
-
-/// Where a digest begins and what it is multiplied by (Fowler, Noll and Vo, FNV-1a of 64 bits).
-const FNV: (u64, u64) = (0xcbf2_9ce4_8422_2325, 0x0100_0000_01b3);
 
 /// Which scene, and what to change in it.
 #[derive(clap::Args)]
@@ -51,45 +49,48 @@ impl Source {
         words.join(" ")
     }
 
-    /// Whether a file is the scene's own.
-    pub fn is_file(&self, file: &Path) -> bool {
-        !SceneSource::new(&self.scene).is_standard_input() && is_same_file(file, &self.scene).unwrap_or(false)
-    }
-
-    /// The validated scene, in which light comes to an end.
-    pub fn load(&self) -> anyhow::Result<Scene> {
-        Ok(self.read()?.1)
+    /// The validated scene, in which light comes to an end. Refuses outputs, each with the option that names it, over a file that the
+    /// scene is read from.
+    pub fn load(&self, outputs: &[(&str, &Path)]) -> anyhow::Result<Scene> {
+        Ok(self.read(outputs)?.1)
     }
 
     /// The same with the file that it follows from, every change made.
-    pub fn read(&self) -> anyhow::Result<(SceneFile, Scene)> {
-        self.read_from(|_, _| Ok(())).map(|(file, scene, ())| (file, scene))
+    pub fn read(&self, outputs: &[(&str, &Path)]) -> anyhow::Result<(SceneFile, Scene)> {
+        self.read_from(outputs, |_| Ok(())).map(|(file, scene, ())| (file, scene))
     }
 
     /// The same, and a number that stands for all that is in the files that it names.
-    pub fn read_digested(&self) -> anyhow::Result<(SceneFile, Scene, u64)> {
-        self.read_from(|file, folder| {
-            let mut digest = FNV.0;
-            for name in file.files()? {
-                let bytes = std::fs::read(folder.join(&name)).with_context(|| name.clone())?;
-                for byte in name.bytes().chain(bytes) {
-                    digest = (digest ^ u64::from(byte)).wrapping_mul(FNV.1);
-                }
+    pub fn read_digested(&self, outputs: &[(&str, &Path)]) -> anyhow::Result<(SceneFile, Scene, u64)> {
+        self.read_from(outputs, |opened| {
+            let mut digest = Digest::EMPTY;
+            for name in opened.file.files()? {
+                let bytes = std::fs::read(opened.folder.join(&name)).with_context(|| name.clone())?;
+                digest = digest.with(name.as_bytes()).with(&bytes);
             }
-            Ok(digest)
+            Ok(digest.number())
         })
+    }
+
+    /// The scene, and the files that it is read from.
+    pub fn load_with_files(&self) -> anyhow::Result<(Scene, Vec<PathBuf>)> {
+        self.read_from(&[], |opened| Ok(opened.read.clone())).map(|(_, scene, read)| (scene, read))
     }
 
     /// The scene, and what `look` finds in its file and folder.
     fn read_from<T>(
         &self,
-        look: impl FnOnce(&SceneFile, &Path) -> anyhow::Result<T>,
+        outputs: &[(&str, &Path)],
+        look: impl FnOnce(&Opened) -> anyhow::Result<T>,
     ) -> anyhow::Result<(SceneFile, Scene, T)> {
         let opened = open(&self.source()?, self.confined)?;
+        for (option, output) in outputs {
+            refuse_read(option, output, &opened.read)?;
+        }
         opened.notes.iter().try_for_each(|text| note(text))?;
         let scene = opened.scene().with_context(|| self.name())?;
         check_end(&scene).with_context(|| self.name())?;
-        let found = look(&opened.file, &opened.folder)?;
+        let found = look(&opened)?;
         Ok((opened.file, scene, found))
     }
 

@@ -8,6 +8,7 @@ mod check;
 mod command;
 mod compare;
 mod completions;
+mod digest;
 mod export;
 mod given;
 mod import;

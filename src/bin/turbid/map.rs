@@ -115,20 +115,17 @@ impl Map {
         }
         let outputs = [("--output", &self.output), ("--ply", &self.ply), ("--npy", &self.npy)];
         let outputs: Vec<_> =
-            outputs.into_iter().filter_map(|(option, file)| Some((option, file.as_ref()?))).collect();
+            outputs.into_iter().filter_map(|(option, file)| Some((option, file.as_deref()?))).collect();
         if outputs.is_empty() {
             bail!("no file to write; allowed: --output FILE.png, --ply FILE.ply, --npy FILE, one or several");
         }
         options::check(given, options::MAP, &self.features())?;
         let exposure = self.shown.checked()?;
-        let scene = self.source.load()?;
+        let scene = self.source.load(&outputs)?;
         let needs_camera = self.output.is_some() || self.amounts.is_by_importance;
         let camera = needs_camera.then(|| self.frame.camera(&scene)).transpose()?;
         for (number, (option, file)) in outputs.iter().enumerate() {
             check_writable(file)?;
-            if self.source.is_file(file) {
-                bail!("{option} names the scene's own file, {}", file.display());
-            }
             for (other, before) in &outputs[..number] {
                 if is_same_file(before, file)? {
                     bail!("{other} {} and {option} {} lead to one file", before.display(), file.display());

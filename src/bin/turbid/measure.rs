@@ -12,7 +12,7 @@ use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahe
 use anyhow::{Context, bail};
 use clap::{ArgMatches, ValueEnum};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
 use turbid::geometry::Voxels;
 use turbid::integrators::Guides;
@@ -219,7 +219,7 @@ impl Measure {
     /// Measures and prints.
     pub fn run(self, given: &ArgMatches) -> anyhow::Result<()> {
         options::check(given, options::MEASURE, &[self.method()])?;
-        let scene = self.source.load()?;
+        let scene = self.source.load(&self.outputs())?;
         if scene.sensors().is_empty() {
             bail!("{}: the scene has no sensors: nothing to measure", self.source.name());
         }
@@ -336,16 +336,17 @@ impl Measure {
         Ok(Some(one))
     }
 
+    /// The files to write, each with its option.
+    fn outputs(&self) -> Vec<(&'static str, &Path)> {
+        let files = [("--npy", &self.npy), ("--vol", &self.vol), ("--out", &self.out)];
+        files.into_iter().filter_map(|(option, file)| Some((option, file.as_deref()?))).collect()
+    }
+
     /// Refuses files that could not be written, or would be written over, before any work.
     fn check_files(&self) -> anyhow::Result<()> {
-        let files = [("--npy", &self.npy), ("--vol", &self.vol), ("--out", &self.out)];
-        let files: Vec<_> =
-            files.iter().filter_map(|(option, file)| Some((option, file.as_ref()?))).collect();
-        let is_same = |a: &PathBuf, b: &PathBuf| is_same_file(a, b).unwrap_or(false);
+        let files = self.outputs();
+        let is_same = |a: &Path, b: &Path| is_same_file(a, b).unwrap_or(false);
         for (number, (option, file)) in files.iter().enumerate() {
-            if self.source.is_file(file) {
-                bail!("{option} names the scene's own file, {}", file.display());
-            }
             if self.photons_from.iter().any(|photons| is_same(file, photons)) {
                 bail!("{option} and --photons-from name one file, {}", file.display());
             }

@@ -18,7 +18,7 @@ use anyhow::{Context, bail};
 use clap::{ArgMatches, ValueEnum};
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use turbid::integrators::mapper::{Mapper, Report, Settings};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
 use turbid::photons::beams::BeamMap;
@@ -179,9 +179,14 @@ impl Render {
         self.check_passes()?;
         self.check_progressive()?;
         let exposure = self.shown.checked()?;
+        let png = self.output.with_extension("png");
+        let errors = self.compared.files(&self.output);
+        let mut outputs: Vec<(&str, &Path)> = vec![("--output", &self.output), ("--output", &png)];
+        outputs.extend(errors.iter().map(|file| ("--compare", file.as_path())));
+        outputs.extend(self.progressive.state.as_deref().map(|file| ("--state", file)));
         let (file, scene, files) = match self.progressive.state {
-            Some(_) => self.source.read_digested()?,
-            None => self.source.read().map(|(file, scene)| (file, scene, 0))?,
+            Some(_) => self.source.read_digested(&outputs)?,
+            None => self.source.read(&outputs).map(|(file, scene)| (file, scene, 0))?,
         };
         let scene = match (scene, self.plan) {
             (scene, PlanName::Auto) => scene,
@@ -206,9 +211,7 @@ impl Render {
         }
         self.compared.check(&scene)?;
         // Before the work, not after it.
-        let png = self.output.with_extension("png");
-        let errors = self.compared.files(&self.output);
-        for file in [&self.output, &png].into_iter().chain(&errors).chain(&self.progressive.state) {
+        for (_, file) in &outputs {
             check_writable(file)?;
         }
         if is_same_file(&self.output, &png)? {

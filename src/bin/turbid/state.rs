@@ -1,5 +1,6 @@
 //! The file that a progressive picture is resumed from: means and variances of its maps so far, and what they were made from.
 
+use super::digest::Digest;
 use anyhow::{Context, bail};
 use std::fs::{self, TryLockError};
 use std::io::Read;
@@ -8,9 +9,9 @@ use turbid::output::write_and_hold;
 use turbid::sensor::Film;
 
 /// How the file begins, up to the end of the line.
-const MAGIC: &str = "turbid progressive 1";
+const MAGIC: &str = "turbid progressive 2";
 
-/// The most that the first two lines take: a scene may have thousands of bodies.
+/// The most that the first three lines take: a scene may have thousands of bodies.
 const HEADER_BYTES: u64 = 100_000_000;
 
 /// What a pilot finds, by keys.
@@ -40,7 +41,7 @@ impl State {
         made_from: &serde_json::Value,
     ) -> anyhow::Result<Self> {
         let named = || format!("--state {}", file.display());
-        // A line, a line of JSON, the numbers.
+        // A line, a line of JSON, a line with a digest of all that follows it, the numbers.
         let data = fs::metadata(file).with_context(named)?;
         let most = Film::byte_count(width, height) + HEADER_BYTES;
         if !data.is_file() || data.len() > most {
@@ -60,15 +61,17 @@ impl State {
         }
         let mut bytes = Vec::new();
         held.read_to_end(&mut bytes).with_context(named)?;
-        let mut parts = bytes.splitn(3, |byte| *byte == b'\n');
-        let (magic, header, numbers) = (parts.next(), parts.next(), parts.next());
-        let (Some(header), Some(numbers), true) = (header, numbers, magic == Some(MAGIC.as_bytes())) else {
+        let mut parts = bytes.splitn(4, |byte| *byte == b'\n');
+        let [magic, header, digest, numbers] = [(); 4].map(|()| parts.next());
+        let (Some(text), Some(digest), Some(numbers), true) =
+            (header, digest, numbers, magic == Some(MAGIC.as_bytes()))
+        else {
             bail!(
                 "{}: not a state that --progressive has written; allowed: another name, or such a file",
                 named()
             );
         };
-        let header: serde_json::Value = serde_json::from_slice(header).map_err(|_| {
+        let header: serde_json::Value = serde_json::from_slice(text).map_err(|_| {
             anyhow::anyhow!("{}: line 2 is not JSON: the file is damaged; begin anew", named())
         })?;
         if let Some(key) = differing(&header, made_from) {
@@ -84,7 +87,8 @@ impl State {
                 named()
             );
         }
-        let film = Film::from_bytes(width, height, numbers);
+        let film = Film::from_bytes(width, height, numbers)
+            .filter(|_| digest == digest_of(text, numbers).as_bytes());
         let Some(film) = film else {
             bail!(
                 "{}: its numbers are not those of {width} x {height} pixels: the file is damaged; begin anew",
@@ -103,11 +107,17 @@ impl State {
             );
         }
         self.held = write_and_hold(file, |out| {
-            writeln!(out, "{MAGIC}\n{made_from}")?;
-            out.write_all(&self.film.to_bytes())
+            let (header, numbers) = (made_from.to_string(), self.film.to_bytes());
+            writeln!(out, "{MAGIC}\n{header}\n{}", digest_of(header.as_bytes(), &numbers))?;
+            out.write_all(&numbers)
         })?;
         Ok(())
     }
+}
+
+/// What tells whether the header and the numbers are those that were written.
+fn digest_of(header: &[u8], numbers: &[u8]) -> String {
+    format!("{:016x}", Digest::EMPTY.with(header).with(numbers).number())
 }
 
 /// The first key in which two settings differ.

@@ -75,13 +75,19 @@ struct Reader<'a> {
     bytes: usize,
     /// The files that include the present one, and itself.
     open: Vec<PathBuf>,
+    /// All files.
+    read: Vec<PathBuf>,
 }
 
-/// The root element of a scene with all its includes. Names of files are relative to the folder of this one.
+/// The root element of a scene with all its includes, and the files that it is in. Names of files are relative to the folder of this one.
 ///
 /// # Errors
 /// `Error::Scene` with file and line
-pub(super) fn read(path: &Path, given: &[(String, String)], is_confined: bool) -> Result<Element> {
+pub(super) fn read(
+    path: &Path,
+    given: &[(String, String)],
+    is_confined: bool,
+) -> Result<(Element, Vec<PathBuf>)> {
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     let parameters = given.iter().cloned().collect();
     let mut reader = Reader {
@@ -92,6 +98,7 @@ pub(super) fn read(path: &Path, given: &[(String, String)], is_confined: bool) -
         named: RefCell::default(),
         bytes: 0,
         open: Vec::new(),
+        read: Vec::new(),
     };
     let root = reader.file(path)?;
     if let Some((name, value)) = given.iter().find(|(name, _)| !reader.named.borrow().contains(name)) {
@@ -116,7 +123,7 @@ pub(super) fn read(path: &Path, given: &[(String, String)], is_confined: bool) -
     if !(version.starts_with("2.") || version.starts_with("3.")) {
         return root.refuse(format!("version is `{}`; allowed: 2.0.0 to 3.x", shown(version)));
     }
-    Ok(root)
+    Ok((root, reader.read))
 }
 
 impl Reader<'_> {
@@ -124,6 +131,7 @@ impl Reader<'_> {
         let name = path.display().to_string();
         let refuse = |what: String| Error::Scene(format!("{name}: {what}"));
         let text = read_text(path, MOST_BYTES).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+        self.read.push(path.to_path_buf());
         let whole = path.canonicalize().map_err(|e| refuse(e.to_string()))?;
         if self.open.contains(&whole) {
             return Err(refuse("includes itself; allowed: files that do not".into()));

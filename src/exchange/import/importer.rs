@@ -43,6 +43,8 @@ pub(super) struct Importer<'a> {
     pub stem: &'a str,
     pub is_confined: bool,
     pub files: Vec<Beside>,
+    /// Files that were read.
+    pub read: Vec<PathBuf>,
     pub notes: Vec<String>,
     pub camera: Option<CameraFile>,
     pub camera_place: Option<&'a Element>,
@@ -94,9 +96,11 @@ impl<'a> Importer<'a> {
     }
 
     /// Where a file is that an element names.
-    pub fn path(&self, element: &Element, name: &str) -> Result<PathBuf> {
+    pub fn path(&mut self, element: &Element, name: &str) -> Result<PathBuf> {
         check_inside(self.is_confined, element, name, self.folder)?;
-        Ok(self.folder.join(name))
+        let path = self.folder.join(name);
+        self.read.push(path.clone());
+        Ok(path)
     }
 
     /// Takes light from all around.

@@ -120,7 +120,7 @@ impl<'a> Importer<'a> {
     }
 
     /// A value that may be a volume.
-    fn volume(&self, part: &Part<'a>, name: &str) -> Result<Option<Volume>> {
+    fn volume(&mut self, part: &Part<'a>, name: &str) -> Result<Option<Volume>> {
         let volumes = part.parts("volume")?;
         let Some((_, element)) = volumes.into_iter().find(|(given, _)| *given == Some(name)) else {
             return Ok(part.color(name)?.map(|color| Volume::Constant(color.of_matter())));

@@ -21,7 +21,7 @@ use glam::DVec3;
 use importer::{Boundary, Filled, Importer, Inner};
 use media::MediumKeys;
 use part::{Ids, Part};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A scene file made of a scene of Mitsuba.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +30,8 @@ pub struct Imported {
     pub scene: SceneFile,
     /// Files that it names, in its own folder.
     pub files: Vec<Beside>,
+    /// Files that were read for it.
+    pub read: Vec<PathBuf>,
     /// What is not quite the same.
     pub notes: Vec<String>,
 }
@@ -76,7 +78,7 @@ pub fn from_mitsuba(
     given: &[(String, String)],
     is_confined: bool,
 ) -> Result<Imported> {
-    let root = document::read(path, given, is_confined)?;
+    let (root, read) = document::read(path, given, is_confined)?;
     let mut ids = Ids::new();
     collect_ids(&root, &mut ids)?;
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
@@ -86,6 +88,7 @@ pub fn from_mitsuba(
         stem,
         is_confined,
         files: Vec::new(),
+        read,
         notes: Vec::new(),
         camera: None,
         camera_place: None,
@@ -321,7 +324,7 @@ impl<'a> Importer<'a> {
         }
         scene.objects = self.objects;
         scene.lights = self.lights;
-        Ok(Imported { scene, files: self.files, notes: self.notes })
+        Ok(Imported { scene, files: self.files, read: self.read, notes: self.notes })
     }
 
     /// A sphere about all there is.

@@ -139,14 +139,17 @@ impl Obj<'_> {
         }
     }
 
-    /// A convex polygon.
+    /// A polygon.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> std::result::Result<(), String> {
         let corners: Vec<Corner> =
             words.map(|word| self.corner(word)).collect::<std::result::Result<_, _>>()?;
         if corners.len() < 3 {
             return Err(format!("a face of {} corners; allowed: 3 or more", corners.len()));
         }
-        cut(corners, |triangle| self.triangle(triangle));
+        let mut triangles = Vec::with_capacity(corners.len() - 2);
+        cut(corners, |(place, ..)| self.positions[place as usize], |triangle| triangles.push(triangle))
+            .map_err(|what| format!("a face of {what}"))?;
+        triangles.into_iter().for_each(|triangle| self.triangle(triangle));
         Ok(())
     }
 

@@ -208,7 +208,9 @@ impl Numbers<'_> {
 pub(super) fn parse(bytes: &[u8], place: impl Fn(DVec3) -> DVec3, turn: Option<Turn<'_>>) -> Result<Mesh> {
     let (form, elements, start) = header(bytes)?;
     let mut numbers = Numbers { form, bytes: &bytes[start..] };
-    let (mut positions, mut parameters, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut positions, mut parameters) = (Vec::new(), Vec::new());
+    // Corners of all faces, one after the other, and how many each has.
+    let (mut rings, mut lengths) = (Vec::new(), Vec::new());
     let mut has_parameters = false;
     // One a vertex, 0 where there is none, if they are asked for.
     let (mut normals, mut has_normals) = (Vec::new(), false);
@@ -281,18 +283,28 @@ pub(super) fn parse(bytes: &[u8], place: impl Fn(DVec3) -> DVec3, turn: Option<T
                 if ring.len() < 3 {
                     return refuse(format!("face {index} has {} corners; allowed: 3 or more", ring.len()));
                 }
-                cut(ring, |corners| faces.push(corners));
+                lengths.push(ring.len());
+                rings.append(&mut ring);
             }
         }
     }
     let highest = positions.len() as f64;
-    if let Some(bad) = faces.iter().flatten().find(|corner| !(0.0..highest).contains(*corner)) {
+    if let Some(bad) = rings.iter().find(|corner| !(0.0..highest).contains(*corner)) {
         return refuse(format!("a face names vertex {bad}; allowed: 0 to {}", highest - 1.0));
     }
-    if faces.is_empty() {
+    if rings.is_empty() {
         return refuse("no faces; a mesh needs at least one");
     }
-    let triangles: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
+    // Now that all vertices are known, which may stand behind the faces.
+    let (mut triangles, mut rest) = (Vec::with_capacity(lengths.len()), &rings[..]);
+    for (index, length) in lengths.into_iter().enumerate() {
+        let (ring, behind) = rest.split_at(length);
+        rest = behind;
+        let corners = ring.iter().map(|corner| *corner as u32).collect();
+        if let Err(what) = cut(corners, |i: u32| positions[i as usize], |corners| triangles.push(corners)) {
+            return refuse(format!("face {index} has {what}"));
+        }
+    }
     let uvs: Option<Vec<[DVec2; 3]>> = has_parameters
         .then(|| triangles.iter().map(|corners| corners.map(|i| parameters[i as usize])).collect());
     if !has_normals {
