@@ -47,7 +47,7 @@ impl Beam {
             }
             // The rectangle's own rounding: its normal is a cross product of two rounded edges.
             Section::Rectangle(r) if (r.normal() - dir).length() > 1e-12 => {
-                return Err(Error::Scene("the front of a beam's rectangle faces along the beam".into()));
+                return Err(Error::Scene("a beam's rectangle lies across it, with its front ahead; allowed: u and v whose cross product is along dir".into()));
             }
             Section::Rectangle(_) => {}
         }

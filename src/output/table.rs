@@ -1,7 +1,7 @@
 //! Tables of measured quantities, as aligned text, CSV or JSON.
 
 use super::one_line;
-use crate::sensor::Measurement;
+use crate::sensor::{Measurement, NoError};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -92,7 +92,7 @@ pub fn write_rows(
     match format {
         Format::Text => write_text(out, rows),
         Format::Csv if rows.is_empty() => {
-            writeln!(out, "{},{}", COLUMNS.join(","), RUN_COLUMNS.join(","))
+            writeln!(out, "{},why,{}", COLUMNS.join(","), RUN_COLUMNS.join(","))
         }
         Format::Csv => write_csv(out, rows.iter().map(|row| (row, run))),
         Format::Json => write_json(out, &Document { format: FORMAT, run, rows }),
@@ -169,6 +169,7 @@ struct BinRow<'a> {
     mean: f64,
     std_error: Option<f64>,
     n: u64,
+    why: Option<NoError>,
 }
 
 const BIN_COLUMNS: [&str; 12] =
@@ -195,6 +196,7 @@ fn write_bins<'a>(
         mean: r.mean,
         std_error: r.std_error,
         n: r.n,
+        why: r.no_error,
     };
     match format {
         Format::Csv => write_csv(out, rows.iter().map(|row| (whole(row), run))),
@@ -327,8 +329,8 @@ mod tests {
         let text = |format| text(&in_bins(), format);
         let csv = text(Format::Csv);
         let lines: Vec<&str> = csv.lines().collect();
-        assert_eq!(lines[0], [BIN_COLUMNS.join(","), RUN_COLUMNS.join(",")].join(","));
-        let run = ",light,7,0..,,,,1000,,,50,,,,,,,,,,,cone,,,0.1.0,";
+        assert_eq!(lines[0], [&BIN_COLUMNS.join(","), "why", &RUN_COLUMNS.join(",")].join(","));
+        let run = ",,light,7,0..,,,,1000,,,50,,,,,,,,,,,cone,,,0.1.0,";
         assert_eq!(
             lines[1],
             format!("\"probe, centre\",fluence,W/L^2,1,2,0,0.1,-2.0,1e-300,0.3333333333333333,0.1,64{run}")
@@ -376,11 +378,20 @@ mod tests {
         for x in AWKWARD.into_iter().chain([f64::INFINITY, f64::NAN]) {
             let text = text(&[row(x, 1.0)], Format::Csv);
             let mut reader = csv::Reader::from_reader(text.as_bytes());
-            assert_eq!(reader.headers().unwrap(), [&COLUMNS[..], &RUN_COLUMNS].concat());
+            assert_eq!(reader.headers().unwrap(), [&COLUMNS[..], &["why"], &RUN_COLUMNS].concat());
             let record = reader.records().next().unwrap().unwrap();
             assert_eq!(&record[0], "probe, centre");
             let back: f64 = record[3].parse().unwrap();
             assert!(back.to_bits() == x.to_bits() || x.is_nan() && back.is_nan());
+        }
+    }
+
+    #[test]
+    fn a_missing_error_has_its_word() {
+        for why in [NoError::OneMap, NoError::Nothing, NoError::TooFew, NoError::HeavyTail] {
+            let rows = [Measurement { no_error: Some(why), ..row(1.0, 0.0) }];
+            assert!(text(&rows, Format::Csv).contains(&format!(",,64,{},light", why.word())));
+            assert!(text(&rows, Format::Json).contains(&format!("\"why\": \"{}\"", why.word())));
         }
     }
 
@@ -404,7 +415,7 @@ mod tests {
 
     #[test]
     fn no_rows_are_still_a_table() {
-        let columns = [COLUMNS.join(","), RUN_COLUMNS.join(",")].join(",");
+        let columns = [&COLUMNS.join(","), "why", &RUN_COLUMNS.join(",")].join(",");
         assert_eq!(text(&[], Format::Csv), format!("{columns}\n"));
         assert!(text(&[], Format::Json).contains("\"rows\": []"));
     }

@@ -63,7 +63,7 @@ pub struct Measurement {
     /// Independent histories or maps behind it.
     pub n: u64,
     /// Why it has no standard error, if it has none.
-    #[serde(skip)]
+    #[serde(rename = "why")]
     pub no_error: Option<NoError>,
     /// Which bin of the sensor it is of, if the sensor has bins.
     #[serde(skip)]
@@ -105,12 +105,14 @@ fn room(scene: &Scene) -> Vec<Measurement> {
     Vec::with_capacity(channels * bins.sum::<usize>())
 }
 
-/// Why a measurement has no standard error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Why a measurement has no standard error; CSV and JSON have the words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum NoError {
     /// There is one photon map, whose estimates share its photons.
     OneMap,
     /// Nothing was found: no path brought anything, no map has a photon there.
+    #[serde(rename = "nothing-found")]
     Nothing,
     /// Fewer than [`FEWEST_PATHS`] paths brought something, fewer than 10 photon histories something to a bin, one map
     /// alone, or there is one history.
@@ -160,7 +162,7 @@ enum Source {
 }
 
 /// Fewest numbers whose variance of variance says something of their tail: that of normal ones is about 2/n.
-const TELLS_TAIL: u64 = 100;
+pub const TELLS_TAIL: u64 = 100;
 
 fn is_heavy_tailed(m: &Moments) -> bool {
     m.n() >= TELLS_TAIL && m.is_heavy_tailed()

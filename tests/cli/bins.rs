@@ -18,7 +18,7 @@ fn rows(arguments: &[&str]) -> Vec<csv::StringRecord> {
     let output = turbid(arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let mut reader = csv::Reader::from_reader(output.stdout.as_slice());
-    assert_eq!(reader.headers().unwrap().len(), 12 + 25);
+    assert_eq!(reader.headers().unwrap().len(), 13 + 25);
     reader.records().collect::<Result<_, _>>().unwrap()
 }
 

@@ -8,6 +8,7 @@ mod bad_pictures;
 mod bins;
 mod compare;
 mod exchange;
+mod inputs;
 mod media;
 mod memory;
 mod options;

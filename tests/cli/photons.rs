@@ -672,3 +672,33 @@ fn photons_go_into_files() {
     succeeds(&["map", "fogbox", "--which", "volume", "--volume", "emit:3000", "--ply", text(&ply)]);
     assert!(String::from_utf8_lossy(&std::fs::read(&ply).unwrap()[..700]).contains("comment emitted 3000\n"));
 }
+
+/// Where a phase function is peaked, errors of radiances from few maps come with a warning: here most of the light is brought by photons
+/// that 16 maps do not meet.
+#[test]
+fn few_maps_do_not_tell_tails() {
+    let folder = Folder::new();
+    let scene = |g: &str, measure: &str| {
+        format!(
+            "[[regions]]\nshape = {{ sphere = {{ center = [0, 0, 0], radius = 1 }} }}\nsigma_t = 2\nalbedo = 0.9\ng = {g}\n\
+             [[lights]]\npoint = {{ position = [2, 2, 1], power = 1 }}\n\
+             [[sensors]]\nname = \"s\"\nmeasure = {{ {measure} }}\n"
+        )
+    };
+    let radiance = "radiance = { origin = [0.1, 0.3, 0.1], dir = [-1, -0.1, 0.5] }";
+    for (g, measure, maps, is_told) in [
+        ("0.9", radiance, "16", true),
+        ("-0.9", radiance, "16", true),
+        ("0.5", radiance, "16", false),
+        ("0.9", radiance, "100", false),
+        ("0.9", "fluence = { at = [0.1, 0.3, 0.1] }", "16", false),
+    ] {
+        let file = folder.file("scene.toml", &scene(g, measure));
+        let arguments =
+            ["measure", text(&file), "--with", "photons", "--photons", "1000", "--k", "5", "--maps", maps];
+        let done = turbid(&arguments).output().unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert!(done.status.success(), "{said}");
+        assert_eq!(said.contains("peak of a phase function"), is_told, "{g} {measure} {maps}: {said}");
+    }
+}

@@ -170,6 +170,11 @@ fn what_cannot_be_resumed_is_refused_and_left_as_it_is() {
         std::fs::write(&state, &wrong).unwrap();
         refuses_naming(&arguments(&out, &["--maps", "4", "--state", named]), &["a.state", "damaged"]);
     }
+    // A number that is as good as any other, but is not what was written.
+    let mut flipped = kept.clone();
+    flipped[body + 40] ^= 1;
+    std::fs::write(&state, &flipped).unwrap();
+    refuses_naming(&arguments(&out, &["--maps", "4", "--state", named]), &["a.state", "damaged"]);
     for damaged in [kept[..kept.len() - 8].to_vec(), kept[..30].to_vec(), Vec::new(), b"no\n{}\n".to_vec()] {
         std::fs::write(&state, &damaged).unwrap();
         refuses_naming(&arguments(&out, &["--maps", "4", "--state", named]), &["a.state"]);

@@ -26,7 +26,8 @@ impl Export {
         let (folder, stem) = folder_and_stem("--mitsuba", &self.mitsuba, "xml")?;
         let (scene, read) = self.source.load_with_files()?;
         let exported = to_mitsuba(&scene, stem).with_context(|| self.source.name())?;
+        write_beside(("--mitsuba", &self.mitsuba, &exported.text), (&folder, &exported.files), &read)?;
         exported.notes.iter().try_for_each(|text| note(text))?;
-        write_beside(("--mitsuba", &self.mitsuba, &exported.text), (&folder, &exported.files), &read)
+        Ok(())
     }
 }

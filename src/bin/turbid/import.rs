@@ -42,8 +42,9 @@ impl Import {
         let parts = imported.in_folder()?;
         let scene = imported.scene.scene(parts.path()).with_context(|| self.file.display().to_string())?;
         check_end(&scene).with_context(|| self.file.display().to_string())?;
-        imported.notes.iter().try_for_each(|text| note(text))?;
         let text = imported.scene.to_toml()?;
-        write_beside(("--output", &self.output, &text), (&folder, &imported.files), &imported.read)
+        write_beside(("--output", &self.output, &text), (&folder, &imported.files), &imported.read)?;
+        imported.notes.iter().try_for_each(|text| note(text))?;
+        Ok(())
     }
 }

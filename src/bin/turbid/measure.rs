@@ -16,14 +16,16 @@ use std::path::{Path, PathBuf};
 use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
 use turbid::geometry::Voxels;
 use turbid::integrators::Guides;
-use turbid::math::Positive;
+use turbid::math::{FOUR_PI, Positive};
+use turbid::medium::Medium;
 use turbid::output::{
     RunInfo, check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
 };
+use turbid::phase::PhaseFunction;
 use turbid::photons::{Ledger, MOST_HISTORIES, PeakBytes, Photon};
 use turbid::scene::{Binned, Orders, Quantity, Scene, Sensor, Space};
 use turbid::sensor::{
-    Measurement, NoError, PathSettings, PhotonReadings, PhotonSettings, Streams, TallySettings,
+    Measurement, NoError, PathSettings, PhotonReadings, PhotonSettings, Streams, TELLS_TAIL, TallySettings,
     by_bidirectional_paths, by_given_photons, by_guided_paths, by_photons_in_passes, by_tallies, check_paths,
     forecast, given_bytes, row_bytes, tally_bytes, usual_reach,
 };
@@ -33,8 +35,8 @@ use turbid::transport::WeightWindows;
 ///
 /// Prints the columns sensor, quantity, unit, mean, std_error, n. Paths and tallies have n = histories; estimates
 /// from photon maps have n = maps: the standard error is that between independent maps, and one map has none, since all its
-/// estimates share its photons. Where no error can be trusted a word says why: one-map, nothing-found, too-few (fewer than
-/// 1,000 paths contribute, or 10 photons), heavy-tail.
+/// estimates share its photons. Where no error can be trusted a word says why, in CSV and JSON in the column `why`: one-map, nothing-found,
+/// too-few (fewer than 1,000 paths contribute, or to a bin 10 photons), heavy-tail, which fewer than 100 maps do not tell.
 ///
 /// An error knows what was drawn. Where few of the paths carry the mean, as those that find a void through many mean free paths
 /// of a shield, a run may draw none of them, and nothing in it says so: its error is then many times too small. Take
@@ -541,8 +543,32 @@ impl Measure {
         let result = result.with_context(|| self.source.name())?;
         let mut notes = vec![ledger_note(&result.ledger)];
         notes.extend(notes_of_gathers(&result, settings.estimator.gather));
+        notes.extend(note_of_peaks(scene, self.maps));
         Ok((result.measurements, notes))
     }
+}
+
+/// A photon in the peak of a phase function brings so many times what it brings on average, or more: radiances may then hang on few of them.
+const PEAKED: f64 = 20.0;
+
+/// What the errors of radiances do not tell where phase functions are peaked and maps are few.
+fn note_of_peaks(scene: &Scene, maps: u64) -> Option<String> {
+    let reads_radiance = scene.sensors().iter().any(|sensor| match &sensor.quantity {
+        Quantity::Radiance(_) => true,
+        Quantity::Binned(binned) => matches!(binned, Binned::Radiance { .. }),
+        _ => false,
+    });
+    let peak = |medium: &Medium| {
+        let phase = medium.phase();
+        FOUR_PI * phase.eval(0.0, 2.0).max(phase.eval(2.0, 0.0))
+    };
+    let highest = scene.media().iter().map(peak).fold(0.0, f64::max);
+    (reads_radiance && highest >= PEAKED && maps < TELLS_TAIL).then(|| {
+        format!(
+            "a photon in the peak of a phase function brings {highest:.0} times the mean one: radiances may hang on few photons, and be wrong \
+             by more than the errors of {maps} maps say; --maps {TELLS_TAIL} or more tells"
+        )
+    })
 }
 
 /// What estimates from maps lack.

@@ -1,6 +1,7 @@
 //! Progress and remaining time on stderr: a bar on a terminal, else a line every ten seconds.
 
 use super::quiet::is_quiet;
+use cpu_time::ProcessTime;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard};
@@ -17,12 +18,16 @@ static TOLD: Mutex<Option<Instant>> = Mutex::new(None);
 pub struct Bar {
     bar: ProgressBar,
     lines: Option<Mutex<Stage>>,
+    /// Where the bar counts thousandths of seconds of processors: when it began, and how many it knows of.
+    clock: Option<Mutex<(ProcessTime, u64)>>,
 }
 
 /// How far a stage is.
 struct Stage {
     name: &'static str,
     steps: u64,
+    /// What all steps are, in words.
+    of: String,
     done: u64,
     start: Instant,
 }
@@ -34,7 +39,7 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Stage {
     fn new(name: &'static str, steps: u64) -> Self {
-        Stage { name, steps, done: 0, start: Instant::now() }
+        Stage { name, steps, of: steps.to_string(), done: 0, start: Instant::now() }
     }
 
     /// The line, so long after the stage began.
@@ -42,7 +47,7 @@ impl Stage {
         let part = self.done as f64 / self.steps.max(1) as f64;
         let left = elapsed.as_secs_f64() * (1.0 - part).max(0.0) / part;
         let left = if left.is_finite() { in_words(left) } else { "unknown time".to_string() };
-        format!("turbid: {}: {:.0} % of {}, {left} left", self.name, 100.0 * part.min(1.0), self.steps)
+        format!("turbid: {}: {:.0} % of {}, {left} left", self.name, 100.0 * part.min(1.0), self.of)
     }
 }
 
@@ -81,6 +86,16 @@ impl Bar {
         Self::styled(name, steps, "{msg:>10} {bar:40} {percent:>3} %  {human_pos} of {human_len}, {eta} left")
     }
 
+    /// A bar for a stage that may take so many seconds of processors from now on, whatever steps are told.
+    pub fn timed(name: &'static str, seconds: f64) -> Self {
+        let template = "{msg:>10} {bar:40} {percent:>3} %  of the time, {eta} left";
+        let bar = Self::styled(name, (1e3 * seconds) as u64, template);
+        if let Some(lines) = &bar.lines {
+            locked(lines).of = format!("{seconds} s of processors");
+        }
+        Bar { clock: Some(Mutex::new((ProcessTime::now(), 0))), ..bar }
+    }
+
     fn styled(name: &'static str, steps: u64, template: &str) -> Self {
         let bar = if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(steps) };
         bar.set_length(steps);
@@ -90,7 +105,7 @@ impl Bar {
         };
         let has_lines = !is_quiet() && !std::io::stderr().is_terminal();
         is_due(&mut locked(&TOLD), Instant::now());
-        Bar { bar, lines: has_lines.then(|| Mutex::new(Stage::new(name, steps))) }
+        Bar { bar, lines: has_lines.then(|| Mutex::new(Stage::new(name, steps))), clock: None }
     }
 
     /// Takes the bar away.
@@ -110,6 +125,11 @@ impl Progress for Bar {
     }
 
     fn advance(&self, steps: u64) {
+        let steps = self.clock.as_ref().map_or(steps, |clock| {
+            let (start, told) = &mut *locked(clock);
+            let spent = start.elapsed().as_millis() as u64;
+            spent.saturating_sub(std::mem::replace(told, spent))
+        });
         self.bar.inc(steps);
         let Some(lines) = &self.lines else { return };
         let mut stage = locked(lines);
@@ -132,6 +152,8 @@ mod tests {
         assert_eq!(stage(1_000_000).line(after), "turbid: emission: 25 % of 4000000, 90 s left");
         assert_eq!(stage(4_000_000).line(after), "turbid: emission: 100 % of 4000000, 0 s left");
         assert_eq!(stage(0).line(after), "turbid: emission: 0 % of 4000000, unknown time left");
+        let timed = Stage { of: "60 s of processors".into(), ..stage(1_000_000) };
+        assert_eq!(timed.line(after), "turbid: emission: 25 % of 60 s of processors, 90 s left");
         assert_eq!(in_words(119.4), "119 s");
         assert_eq!((in_words(130.0), in_words(9000.0)), ("3 min".to_string(), "2.5 h".to_string()));
     }

@@ -186,10 +186,7 @@ impl Sequence<'_> {
             made.maps.truncate(1);
             made.maps.push(maps_made);
             let now = start.elapsed().as_secs_f64();
-            bar.advance(match self.until {
-                Until::Maps(_) => 1,
-                Until::Seconds(_) => (1e3 * (now - spent)) as u64,
-            });
+            bar.advance(1);
             spent = now;
             if let Some(file) = self.state.filter(|_| of_this_run == 0 || kept.elapsed() > EVERY) {
                 state.write(file, made_from)?;
@@ -217,7 +214,7 @@ impl Sequence<'_> {
     fn bar(&self, before: u64) -> Bar {
         match self.until {
             Until::Maps(maps) => Bar::stage("maps", maps.saturating_sub(before)),
-            Until::Seconds(seconds) => Bar::stage("ms", (1e3 * seconds) as u64),
+            Until::Seconds(seconds) => Bar::timed("maps", seconds),
         }
     }
 

@@ -26,6 +26,7 @@ use turbid::photons::maps::fill_part;
 use turbid::photons::{MOST_HISTORIES, Part, PhotonMap};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Blocks, Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, PictureError, Streams};
+use turbid::transport::Progress;
 
 /// Draw the picture that a scene's camera sees, by photon maps, by paths, by bidirectional paths or by light tracing.
 ///
@@ -532,24 +533,29 @@ impl Render {
         (camera, streams): (&Camera, Streams),
     ) -> anyhow::Result<Report> {
         let pixels = film.pixels().len() as u64;
-        let mut take = |film: &mut Film, samples: u64| {
-            let name = if matches!(method, Method::Light(_)) { "photons" } else { "gathering" };
+        let name = if matches!(method, Method::Light(_)) { "photons" } else { "gathering" };
+        let mut take = |film: &mut Film, samples: u64, bar: &dyn Progress| {
+            stages.time("samples", || method.extend(film, camera, samples, streams, bar))
+        };
+        let Some(until) = until else {
+            let samples = self.samples.unwrap_or(SAMPLES);
             // A photon beside each path.
             let walks = if matches!(method, Method::Bidirectional(_)) { 2 } else { 1 };
             let bar = Bar::stage(name, samples.saturating_mul(walks * pixels));
-            let work = stages.time("samples", || method.extend(film, camera, samples, streams, &bar));
+            let work = take(film, samples, &bar);
             bar.finish();
-            work
+            return Ok(work?);
         };
-        let Some(until) = until else { return Ok(take(film, self.samples.unwrap_or(SAMPLES))?) };
         let spent = || ProcessTime::now().as_duration().as_secs_f64();
+        let bar = Bar::timed(name, until - spent());
         let (start, mut work, mut next) = (spent(), Report::default(), 1);
         loop {
-            work.add_assign(take(film, next)?);
+            work.add_assign(take(film, next, &bar)?);
             let (now, taken) = (spent(), film.samples());
             // As many more as fit at the speed so far, half of them at most at once.
             let fit = ((until - now) / ((now - start) / taken as f64)).max(0.0) as u64;
             if fit == 0 {
+                bar.finish();
                 return Ok(work);
             }
             next = fit.div_ceil(2).max(1);

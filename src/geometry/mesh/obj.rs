@@ -274,6 +274,10 @@ mod tests {
             (format!("{square}f 0 2 3\n"), at(4, "a face names vertex 0; allowed: 1 to 3, or -3 to -1")),
             (format!("{square}f 1 2 -4\n"), at(4, "a face names vertex -4; allowed: 1 to 3, or -3 to -1")),
             (format!("{square}f 1 2\n"), at(4, "a face of 2 corners; allowed: 3 or more")),
+            (
+                format!("{square}v 0 2 0\nf 1 3 2 4\n"),
+                at(5, "a face of sides that cross each other; allowed: polygons without"),
+            ),
             (format!("{square}f 1/1 2/1 3/1\n"), at(4, "a face names vt 1; no vt stands before this line")),
             (
                 format!("{square}f 1 2 x\n"),

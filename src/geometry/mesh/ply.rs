@@ -388,6 +388,16 @@ mod tests {
         }
     }
 
+    /// Faces may stand before their vertices, and need not be convex.
+    #[test]
+    fn polygons_that_are_not_convex() {
+        let arrow = "ply\nformat ascii 1.0\nelement face 2\nproperty list uchar int vertex_indices\nelement vertex 4\n\
+                     property float x\nproperty float y\nproperty float z\nend_header\n\
+                     4 0 1 2 3\n3 0 1 2\n0 0 0\n2 0 0\n2 2 0\n1.75 0.25 0\n";
+        let mesh = parse(arrow.as_bytes(), |p| p, None).unwrap();
+        assert_eq!((mesh.len(), mesh.area()), (3, 2.5));
+    }
+
     /// What is written reads back to the last bit, in whatever order the tree has the triangles.
     #[test]
     fn written_meshes_read_back() {
@@ -424,6 +434,10 @@ mod tests {
             (with("vertex_index", "corners"), "its faces have no list vertex_indices; allowed: one"),
             (with("4 0 1 2 3", "4 0 1 2 4"), "a face names vertex 4; allowed: 0 to 3"),
             (with("4 0 1 2 3", "4 0 1 2 -1"), "a face names vertex -1; allowed: 0 to 3"),
+            (
+                with("4 0 1 2 3", "4 0 2 1 3"),
+                "face 0 has sides that cross each other; allowed: polygons without",
+            ),
             (with("4 0 1 2 3", "2 0 1"), "face 0 has 2 corners; allowed: 3 or more"),
             (with("4 0 1 2 3", "9e9 0 1"), "a list of 9000000000 in face 0; allowed: 0 to 1000000"),
             (with("2 3 0 1", "2 inf 0 1"), "vertex 2 is not finite"),
