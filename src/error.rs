@@ -33,7 +33,7 @@ pub enum Error {
 }
 
 /// A number without rows of zeros.
-fn plain(value: f64) -> String {
+pub(crate) fn plain(value: f64) -> String {
     let is_near_one = value == 0.0 || (1e-4..1e9).contains(&value.abs()) || !value.is_finite();
     if is_near_one { format!("{value}") } else { format!("{value:e}") }
 }

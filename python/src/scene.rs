@@ -57,15 +57,15 @@ impl Given {
         }
         let source = with(path);
         let mut opened = open(&source, false).map_err(told)?;
-        for note in &opened.notes {
-            let text = CString::new(note.as_str()).unwrap_or_default();
-            PyErr::warn(scene.py(), &scene.py().get_type::<PyUserWarning>(), &text, 2)?;
-        }
         if let Some(folder) = folder {
             if opened.is_temporary() {
                 return Err(refuse("folder says nothing to a scene of Mitsuba; allowed: without it"));
             }
             opened.folder = folder;
+        }
+        for note in &opened.notes {
+            let text = CString::new(note.as_str()).unwrap_or_default();
+            PyErr::warn(scene.py(), &scene.py().get_type::<PyUserWarning>(), &text, 2)?;
         }
         Ok(Given { opened, name: Some(source.name()) })
     }

@@ -94,7 +94,7 @@ def test_scenes_of_mitsuba_are_read(tmp_path, turbid_program):
         assert told[0].filename == __file__
         assert theirs.mean() > 0
         assert np.array_equal(theirs, turbid.render(tmp_path / f"{name}.toml", "paths", samples=2).radiance)
-        with pytest.raises(turbid.Error, match="folder says nothing"), pytest.warns(UserWarning):
+        with pytest.raises(turbid.Error, match="folder says nothing"):
             turbid.render(file, "paths", folder=tmp_path)
     with pytest.warns(UserWarning):
         assert turbid.scene(tmp_path / "fog.xml") == turbid.scene(tmp_path / "fog.toml")

@@ -2,7 +2,6 @@
 
 use super::import::{Imported, from_mitsuba};
 use crate::error::{Error, Result};
-use crate::output::write_atomically;
 use crate::scene::{Scene, SceneFile, SceneSource};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -47,7 +46,7 @@ impl Opened {
 /// # Errors
 /// `Error::Scene` with file and line, for what is none of them
 pub fn open(source: &SceneSource, is_confined: bool) -> Result<Opened> {
-    let opened = if is_of_mitsuba(source.file()) {
+    let mut opened = if is_of_mitsuba(source.file()) {
         let imported = from_mitsuba(source.file(), "scene", &[], is_confined)?;
         let text = imported.scene.to_toml().map_err(|error| Error::Scene(error.to_string()))?;
         let parts = imported.in_folder()?;
@@ -58,9 +57,9 @@ pub fn open(source: &SceneSource, is_confined: bool) -> Result<Opened> {
         if !source.is_builtin() && !source.is_standard_input() {
             opened.read.push(source.file().to_path_buf());
         }
-        opened.read.extend(opened.file.files()?.iter().map(|name| opened.folder.join(name)));
         opened
     };
+    opened.read.extend(opened.file.files()?.iter().map(|name| opened.folder.join(name)));
     if is_confined {
         opened.file.check_confined(&opened.folder).map_err(|error| error.within(&source.name()))?;
     }
@@ -82,8 +81,7 @@ impl Imported {
         };
         let folder = tempfile::tempdir().map_err(|error| failed(&error))?;
         for file in &self.files {
-            write_atomically(folder.path().join(&file.name), |out| out.write_all(&file.bytes))
-                .map_err(|error| failed(&error))?;
+            std::fs::write(folder.path().join(&file.name), &file.bytes).map_err(|error| failed(&error))?;
         }
         Ok(folder)
     }

@@ -111,6 +111,7 @@ fn located(file: &str, text: &str, error: &toml::de::Error) -> String {
 /// The message of an error of TOML in one line, with the key in the place of "the value", and the nearest known key.
 pub fn toml_message(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().replace('\n', " ");
+    let message = of_another_type(&message).unwrap_or(message);
     for (prefix, what) in [("unknown field `", "key"), ("unknown variant `", "value")] {
         if let Some(rest) = message.strip_prefix(prefix) {
             let word = rest.split('`').next().unwrap_or_default();
@@ -131,6 +132,21 @@ pub fn toml_message(text: &str, error: &toml::de::Error) -> String {
         },
         None => message,
     }
+}
+
+/// What is said of a value of another type, in words of scene files; none where something else is said.
+fn of_another_type(message: &str) -> Option<String> {
+    let (found, expected) = message.strip_prefix("invalid type: ")?.rsplit_once(", expected ")?;
+    let in_words = |of: &str| match of {
+        "f64" | "f32" => "a number",
+        "i64" | "u64" | "u32" | "u16" | "u8" | "usize" => "a whole number",
+        "sequence" | "a sequence" => "a list",
+        "map" | "a map" => "a table",
+        of if of.starts_with("struct ") => "a table",
+        _ => "",
+    };
+    let said = |of: &str| if in_words(of).is_empty() { of.to_string() } else { in_words(of).to_string() };
+    Some(format!("the value is {}; allowed: {}", said(found), said(expected)))
 }
 
 /// The key whose value stands at a place of the text: the last `key =` before it, on its line.

@@ -106,13 +106,11 @@ fn room(scene: &Scene) -> Vec<Measurement> {
 }
 
 /// Why a measurement has no standard error; CSV and JSON have the words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoError {
     /// There is one photon map, whose estimates share its photons.
     OneMap,
     /// Nothing was found: no path brought anything, no map has a photon there.
-    #[serde(rename = "nothing-found")]
     Nothing,
     /// Fewer than [`FEWEST_PATHS`] paths brought something, fewer than 10 photon histories something to a bin, one map
     /// alone, or there is one history.
@@ -120,6 +118,12 @@ pub enum NoError {
     /// The variance is too uncertain: its own relative variance is above 0.1, or the largest contributions carry it and have the
     /// tail of a distribution whose mean they have not settled ([`Tail::is_heavy`]).
     HeavyTail,
+}
+
+impl serde::Serialize for NoError {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.word())
+    }
 }
 
 impl NoError {

@@ -89,6 +89,11 @@ fn parts_that_do_not_fit_together() {
 }
 
 #[test]
+fn commands_that_are_none() {
+    refuses_naming(&["foo"], &["'foo'", "allowed: ", "render, ", "measure, "]);
+}
+
+#[test]
 fn wrong_sets() {
     let cases = [
         ("albedo=1.5", "albedo is 1.5; allowed: 0 to 1"),
@@ -98,6 +103,8 @@ fn wrong_sets() {
         ("tau=0", "tau is 0; allowed: finite and above 0"),
         ("tau=nan", "tau is NaN"),
         ("tau=inf", "tau is inf"),
+        ("tau=NaN", "tau is string \"NaN\"; allowed: a number"),
+        ("tau=[1]", "tau is a list; allowed: a number"),
         ("g=1", "g is 1; allowed: above -1 and below 1"),
         ("g=-1", "g is -1"),
         ("mu0=0", "mu0 is 0; allowed: above 0 and at most 1, or \"diffuse\""),
@@ -128,6 +135,7 @@ fn wrong_sets() {
         ("regions.0.albdo=0.5", "nearest: `albedo`"),
         ("regions.0.albedo=2", "albedo is 2; allowed: 0 to 1"),
         ("cell.side=2", "has no parts"),
+        ("regions.0=1", "is integer `1`; allowed: a table"),
     ];
     for (set, words) in cases {
         refuses_naming(&["check", text(&file), "--set", set], &[&format!("--set {set}"), words]);

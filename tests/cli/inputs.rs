@@ -69,6 +69,9 @@ measure = { mean-fluence = { min = [0, 0, 0], max = [1, 1, 1], cells = [2, 2, 2]
     );
     folder.file("more.xml", "<scene version='3.0.0'></scene>");
     std::fs::copy(at("room-object-0.ply"), at("in-mesh-0.ply")).unwrap();
+    std::fs::copy(at("room-object-0.ply"), at("other.ply")).unwrap();
+    let (none, set) =
+        (at("none.exr"), format!("objects.0.shape.mesh.file={:?}", at("other.ply").display().to_string()));
     let kept = held(folder.0.path());
     let render = ["--with", "paths", "--samples", "1"];
     let measure = ["--with", "paths", "--samples", "100"];
@@ -76,7 +79,9 @@ measure = { mean-fluence = { min = [0, 0, 0], max = [1, 1, 1], cells = [2, 2, 2]
     for (command, file, more, option, output) in [
         ("render", &room, &render[..], "-o", "paint.exr"),
         ("render", &disguised, &render, "-o", "room.exr"),
+        ("render", &room, &["--progressive", "--maps", "2", "-o", text(&none)], "--state", "fog.vol"),
         ("measure", &room, &measure, "--vol", "fog.vol"),
+        ("measure", &xml, &["--set", &set, "--with", "paths"], "--out", "other.ply"),
         ("measure", &room, &measure, "--out", "room-object-0.ply"),
         ("measure", &room, &measure, "--npy", "room.toml"),
         ("map", &room, &map, "--ply", "room-object-0.ply"),
@@ -90,5 +95,15 @@ measure = { mean-fluence = { min = [0, 0, 0], max = [1, 1, 1], cells = [2, 2, 2]
         let arguments = [&[command, text(file)], more, &[option, text(&output)]].concat();
         refuses_naming(&arguments, &["a file of the scene", "allowed: another"]);
         assert!(held(folder.0.path()) == kept, "{arguments:?}");
+    }
+    // By way of a link too, which is told.
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(at("fog.vol"), at("link.vol")).unwrap();
+        let link = at("link.vol");
+        let arguments = [&["measure", text(&room)], &measure[..], &["--vol", text(&link)]].concat();
+        refuses_naming(&arguments, &["link.vol, which is ", "fog.vol, a file of the scene"]);
+        std::fs::remove_file(link).unwrap();
+        assert!(held(folder.0.path()) == kept);
     }
 }

@@ -249,7 +249,7 @@ fn wrong_structures() {
         (
             "\"wide\"",
             columns("file = \"step.csv\", base = 0, top = 0.1"),
-            "expected a number, or two numbers",
+            "allowed: a number, or two numbers",
         ),
         (
             "0.4",

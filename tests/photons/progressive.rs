@@ -63,4 +63,21 @@ fn films_come_back_from_their_bytes() {
     };
     assert!(with(16, f64::NAN.to_bits()).is_none(), "a number that is none");
     assert!(with(0, 4).is_none(), "a pixel of more maps than the others");
+    let size = bytes.len() / 6;
+    let in_all = |at: usize, value: u64| {
+        let mut bytes = bytes.clone();
+        bytes
+            .chunks_exact_mut(size)
+            .for_each(|pixel| pixel[at..at + 8].copy_from_slice(&value.to_le_bytes()));
+        Film::from_bytes(3, 2, &bytes)
+    };
+    assert!(
+        in_all(0, 3).is_some() && in_all(0, 0).is_none() && in_all(0, u64::MAX).is_none(),
+        "a count that none has"
+    );
+    let last = size - 8;
+    assert!(
+        in_all(last, 1f64.to_bits()).is_some() && in_all(last, (-1f64).to_bits()).is_none(),
+        "a square below 0"
+    );
 }

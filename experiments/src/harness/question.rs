@@ -65,15 +65,14 @@ impl Question {
             let digest = Digest::of_file(file).with_context(|| format!("cannot read {}", file.display()))?;
             parts.push(digest.to_string().into_bytes());
         }
-        // A scene of Mitsuba names its files in its own way, and files that these name.
+        // A scene of Mitsuba names its files in its own way.
         let is_of_mitsuba = |file: &&PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml"));
         for scene in named.iter().filter(is_of_mitsuba) {
             // What is wrong with it is told where it is read.
             let Ok(opened) = open(&SceneSource::new(scene), false) else { continue };
-            for name in opened.file.files()? {
-                let file = opened.folder.join(&name);
+            for file in &opened.read {
                 let digest =
-                    Digest::of_file(&file).with_context(|| format!("{}: {name}", scene.display()))?;
+                    Digest::of_file(file).with_context(|| format!("cannot read {}", file.display()))?;
                 parts.push(digest.to_string().into_bytes());
             }
         }
@@ -143,12 +142,16 @@ mod tests {
         write(
             "scene.xml",
             "<scene version='3.0.0'><integrator type='volpath'/><shape type='obj'><string name='filename' value='a.obj'/>\
-             <bsdf type='diffuse'/></shape><emitter type='constant'/></scene>",
+             <bsdf type='diffuse'/></shape><include filename='lights.xml'/></scene>",
         );
+        write("lights.xml", "<scene version='3.0.0'><emitter type='constant'/></scene>");
         write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         let third = read();
         assert_eq!(read(), third);
         write("a.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
-        assert_ne!(read().digest, third.digest);
+        let fourth = read();
+        assert_ne!(fourth.digest, third.digest);
+        write("lights.xml", "<scene version='3.0.0'><emitter type='constant'/> </scene>");
+        assert_ne!(read().digest, fourth.digest);
     }
 }

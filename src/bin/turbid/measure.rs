@@ -484,6 +484,7 @@ impl Measure {
             scene.sensors().iter().any(|s| is_fluence(&s.quantity) && s.orders.and(&self.orders).contains(0));
         let mut notes = notes_of_given(scene, has_uncollided, counts_uncollided);
         notes.extend(notes_of_gathers(&readings, settings.estimator.gather));
+        notes.extend(note_of_peaks(scene, self.photons_from.len() as u64));
         Ok((readings.measurements, notes))
     }
 
@@ -548,7 +549,7 @@ impl Measure {
     }
 }
 
-/// A photon in the peak of a phase function brings so many times what it brings on average, or more: radiances may then hang on few of them.
+/// A photon in the peak of a phase function, forwards or backwards, brings so many times what it brings on average, or more: radiances may then hang on few of them.
 const PEAKED: f64 = 20.0;
 
 /// What the errors of radiances do not tell where phase functions are peaked and maps are few.
@@ -563,7 +564,7 @@ fn note_of_peaks(scene: &Scene, maps: u64) -> Option<String> {
         FOUR_PI * phase.eval(0.0, 2.0).max(phase.eval(2.0, 0.0))
     };
     let highest = scene.media().iter().map(peak).fold(0.0, f64::max);
-    (reads_radiance && highest >= PEAKED && maps < TELLS_TAIL).then(|| {
+    (reads_radiance && highest >= PEAKED && (2..TELLS_TAIL).contains(&maps)).then(|| {
         format!(
             "a photon in the peak of a phase function brings {highest:.0} times the mean one: radiances may hang on few photons, and be wrong \
              by more than the errors of {maps} maps say; --maps {TELLS_TAIL} or more tells"

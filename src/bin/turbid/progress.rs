@@ -91,7 +91,7 @@ impl Bar {
         let template = "{msg:>10} {bar:40} {percent:>3} %  of the time, {eta} left";
         let bar = Self::styled(name, (1e3 * seconds) as u64, template);
         if let Some(lines) = &bar.lines {
-            locked(lines).of = format!("{seconds} s of processors");
+            locked(lines).of = format!("{} of processors", in_words(seconds));
         }
         Bar { clock: Some(Mutex::new((ProcessTime::now(), 0))), ..bar }
     }
@@ -116,6 +116,10 @@ impl Bar {
 
 impl Progress for Bar {
     fn stage(&self, name: &'static str, steps: u64) {
+        // Time goes on through all stages.
+        if self.clock.is_some() {
+            return;
+        }
         self.bar.reset();
         self.bar.set_length(steps);
         self.bar.set_message(name);

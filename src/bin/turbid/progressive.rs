@@ -149,8 +149,8 @@ impl Sequence<'_> {
             _ => State::new(width, height),
         };
         let before = state.film.samples();
-        let (bar, mut kept) = (self.bar(before), Instant::now());
         let began = start.elapsed().as_secs_f64();
+        let (bar, mut kept) = (self.bar(before, began), Instant::now());
         let mut spent = began;
         loop {
             let done = state.film.samples();
@@ -211,10 +211,11 @@ impl Sequence<'_> {
         Ok(made)
     }
 
-    fn bar(&self, before: u64) -> Bar {
+    /// The bar, after so many maps and seconds.
+    fn bar(&self, before: u64, spent: f64) -> Bar {
         match self.until {
             Until::Maps(maps) => Bar::stage("maps", maps.saturating_sub(before)),
-            Until::Seconds(seconds) => Bar::timed("maps", seconds),
+            Until::Seconds(seconds) => Bar::timed("maps", seconds - spent),
         }
     }
 

@@ -53,7 +53,8 @@ impl State {
         }
         let mut held = fs::File::open(file).with_context(named)?;
         // Where there are no locks, nothing tells of other runs.
-        if let Err(TryLockError::WouldBlock) = held.try_lock() {
+        let is_held = matches!(held.try_lock(), Err(TryLockError::WouldBlock));
+        if is_held || !is_still_at(&held, file) {
             bail!(
                 "{}: another run goes on from it; allowed: wait for that one's end, or another name",
                 named()
@@ -66,6 +67,9 @@ impl State {
         let (Some(text), Some(digest), Some(numbers), true) =
             (header, digest, numbers, magic == Some(MAGIC.as_bytes()))
         else {
+            if bytes.starts_with(b"turbid progressive ") && magic != Some(MAGIC.as_bytes()) {
+                bail!("{}: a state of another version of turbid; begin anew", named());
+            }
             bail!(
                 "{}: not a state that --progressive has written; allowed: another name, or such a file",
                 named()
@@ -113,6 +117,20 @@ impl State {
         })?;
         Ok(())
     }
+}
+
+/// Whether an open file still has its name: another run may have put a new one there before this one was locked.
+#[cfg(unix)]
+fn is_still_at(open: &fs::File, name: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |found: std::io::Result<fs::Metadata>| found.ok().map(|found| (found.dev(), found.ino()));
+    place(open.metadata()) == place(fs::metadata(name))
+}
+
+/// Elsewhere nothing tells.
+#[cfg(not(unix))]
+fn is_still_at(_open: &fs::File, _name: &Path) -> bool {
+    true
 }
 
 /// What tells whether the header and the numbers are those that were written.

@@ -11,16 +11,20 @@ pub fn explain(error: &clap::Error) -> anyhow::Result<()> {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => print(&error.render().to_string()),
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            let names: Vec<String> = <crate::command::Command as clap::Subcommand>::augment_subcommands(
-                clap::Command::new("turbid"),
-            )
-            .get_subcommands()
-            .map(|command| command.get_name().to_string())
-            .collect();
-            anyhow::bail!("no command given; allowed: {}; more with --help", names.join(", "))
+            anyhow::bail!("no command given; allowed: {}; more with --help", commands())
+        }
+        ErrorKind::InvalidSubcommand => {
+            anyhow::bail!("{}; allowed: {}", one_line(&error.render().to_string()), commands())
         }
         _ => anyhow::bail!("{}", one_line(&error.render().to_string())),
     }
+}
+
+/// The names of all commands.
+fn commands() -> String {
+    let all = clap::Command::new("turbid");
+    let all = <crate::command::Command as clap::Subcommand>::augment_subcommands(all);
+    all.get_subcommands().map(clap::Command::get_name).collect::<Vec<_>>().join(", ")
 }
 
 /// The parts of a message of several lines, without usage and hints where to look.

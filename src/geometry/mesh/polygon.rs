@@ -5,10 +5,13 @@ use glam::{DVec2, DVec3};
 /// Turns below this part of the product of two sides are rounding.
 const STRAIGHT: f64 = 1e-9;
 
-/// A polygon that is not convex has no more corners: each of its triangles is tried against all of them.
-const MOST: usize = 4096;
+/// What reaches no farther across than this part of its length is a line but for rounding, as of single precision.
+const THIN: f64 = 1e-6;
 
-/// Cuts a polygon into triangles of its own sense of rotation.
+/// A polygon that is not convex has no more corners: each of its triangles is tried against all of them.
+const MOST: usize = 16384;
+
+/// Cuts a polygon into triangles of its own sense of rotation; some may have no area.
 ///
 /// # Arguments
 /// `at` says where a corner is
@@ -24,17 +27,13 @@ pub(super) fn cut<T: Copy>(
         return Ok(());
     }
     let flat = flat(&corners.iter().map(|corner| at(*corner)).collect::<Vec<_>>());
-    if is_convex(&flat) {
-        cut_convex(corners, triangle);
-        return Ok(());
-    }
-    if corners.len() > MOST {
+    if corners.len() > MOST && !is_convex(&flat) {
         return Err(format!(
-            "{} corners, and is not convex; allowed: up to {MOST}, or convex polygons",
+            "{} corners, and is not convex, but for rounding at least; allowed: up to {MOST}, or convex polygons",
             corners.len()
         ));
     }
-    match cut_ears(corners.into_iter().zip(flat).collect(), triangle) {
+    match cut_ears(corners, flat, triangle) {
         true => Ok(()),
         false => Err("sides that cross each other; allowed: polygons without".to_string()),
     }
@@ -44,9 +43,10 @@ pub(super) fn cut<T: Copy>(
 fn flat(corners: &[DVec3]) -> Vec<DVec2> {
     // From one corner, so that a polygon far off loses no digits.
     let ways: Vec<DVec3> = corners.iter().map(|corner| *corner - corners[0]).collect();
-    let following = ways.iter().cycle().skip(1);
-    let normal: DVec3 = ways.iter().zip(following).map(|(a, b)| a.cross(*b)).sum();
-    let axis = normal.abs().max_position();
+    let crosses = || ways.iter().zip(ways.iter().cycle().skip(1)).map(|(a, b)| a.cross(*b));
+    // By the plane that it lies in, which areas that cancel tell as well.
+    let axis = crosses().map(DVec3::abs).sum::<DVec3>().max_position();
+    let normal: DVec3 = crosses().sum();
     let seen = |way: DVec3| {
         let [x, y] = [way[(axis + 1) % 3], way[(axis + 2) % 3]];
         if normal[axis] < 0.0 { DVec2::new(y, x) } else { DVec2::new(x, y) }
@@ -56,16 +56,17 @@ fn flat(corners: &[DVec3]) -> Vec<DVec2> {
 
 /// Whether it turns to the left everywhere, and goes around once: its sides then go to the right once, and to the left once.
 fn is_convex(flat: &[DVec2]) -> bool {
-    let side = |i: usize| flat[(i + 1) % flat.len()] - flat[i % flat.len()];
-    let is_left = |i: usize| {
-        let (a, b) = (side(i), side(i + 1));
-        a.perp_dot(b) >= -STRAIGHT * a.length() * b.length()
-    };
+    let following = flat.iter().cycle().skip(1);
+    // Corners in one place are one.
+    let sides: Vec<DVec2> =
+        flat.iter().zip(following).map(|(a, b)| *b - *a).filter(|side| *side != DVec2::ZERO).collect();
+    let turns = || sides.iter().zip(sides.iter().cycle().skip(1));
+    let is_left = |(a, b): (&DVec2, &DVec2)| a.perp_dot(*b) >= -STRAIGHT * a.length() * b.length();
     let is_rightward: Vec<bool> =
-        (0..flat.len()).map(|i| side(i).x).filter(|x| *x != 0.0).map(|x| x > 0.0).collect();
-    let following = is_rightward.iter().cycle().skip(1);
-    let changes = is_rightward.iter().zip(following).filter(|(a, b)| a != b).count();
-    changes <= 2 && (0..flat.len()).all(is_left)
+        sides.iter().filter(|side| side.x != 0.0).map(|side| side.x > 0.0).collect();
+    let changes =
+        is_rightward.iter().zip(is_rightward.iter().cycle().skip(1)).filter(|(a, b)| a != b).count();
+    changes <= 2 && turns().all(is_left)
 }
 
 /// Every second corner is cut off, and again what is left: a fan about one corner would be hundreds of triangles that lie over each other
@@ -81,35 +82,46 @@ fn cut_convex<T: Copy>(corners: Vec<T>, mut triangle: impl FnMut([T; 3])) {
     }
 }
 
-/// Cuts off corners whose triangle holds no other corner, one after the other; whether all could be.
+/// Cuts off corners whose triangle holds no other corner, one after the other, until what is left is convex; whether that could be.
 ///
 /// # Source
 /// Meisters 1975: every polygon whose sides do not cross has two such corners.
-fn cut_ears<T: Copy>(mut ring: Vec<(T, DVec2)>, mut triangle: impl FnMut([T; 3])) -> bool {
+fn cut_ears<T: Copy>(mut ring: Vec<T>, mut flat: Vec<DVec2>, mut triangle: impl FnMut([T; 3])) -> bool {
     let mut from = 0;
-    while ring.len() > 3 {
+    while !is_convex(&flat) {
         let count = ring.len();
-        // Corners on the edge of a triangle count as in it, as long as others are to be had.
-        let ear = [true, false].into_iter().find_map(|with_edge| {
-            (0..count).map(|n| (from + n) % count).find(|middle| is_ear(&ring, *middle, with_edge))
-        });
-        let Some(middle) = ear else { return false };
-        triangle([(middle + count - 1) % count, middle, (middle + 1) % count].map(|i| ring[i].0));
+        let find = |is_wanted: &dyn Fn(usize) -> bool| {
+            (0..count).map(|n| (from + n) % count).find(|i| is_wanted(*i))
+        };
+        // Spurs first, which no triangle may cross. Corners on the edge of a triangle count as in it, as long as others are to be had, and
+        // what spans nothing is gone: teeth may stand on that edge and reach through.
+        let ear = find(&|middle| is_straight(&flat, middle, true))
+            .or_else(|| find(&|middle| is_ear(&flat, middle, true)))
+            .or_else(|| find(&|middle| is_straight(&flat, middle, false)))
+            .or_else(|| find(&|middle| is_ear(&flat, middle, false)));
+        let Some(middle) = ear else {
+            if is_thin(&flat) {
+                break;
+            }
+            return false;
+        };
+        triangle(around(count, middle).map(|i| ring[i]));
         ring.remove(middle);
+        flat.remove(middle);
         // The next but one, so that triangles do not lie over each other.
         from = middle + 1;
     }
-    let [a, b, c] = [0, 1, 2].map(|i| ring[i].1);
-    if (b - a).perp_dot(c - a) < -STRAIGHT * (b - a).length() * (c - a).length() {
-        return false;
-    }
-    triangle([ring[0].0, ring[1].0, ring[2].0]);
+    cut_convex(ring, triangle);
     true
 }
 
-fn is_ear<T>(ring: &[(T, DVec2)], middle: usize, with_edge: bool) -> bool {
-    let count = ring.len();
-    let [a, b, c] = [count - 1, 0, 1].map(|k| ring[(middle + k) % count].1);
+/// A corner's number between those of its neighbours.
+fn around(count: usize, middle: usize) -> [usize; 3] {
+    [(middle + count - 1) % count, middle, (middle + 1) % count]
+}
+
+fn is_ear(flat: &[DVec2], middle: usize, with_edge: bool) -> bool {
+    let [a, b, c] = around(flat.len(), middle).map(|i| flat[i]);
     if (b - a).perp_dot(c - b) <= 0.0 {
         return false;
     }
@@ -118,7 +130,25 @@ fn is_ear<T>(ring: &[(T, DVec2)], middle: usize, with_edge: bool) -> bool {
         let is_corner = p == a || p == b || p == c;
         !is_corner && sides.iter().all(|side| *side > 0.0 || (with_edge && *side == 0.0))
     };
-    !ring.iter().any(|(_, p)| is_in(*p))
+    !flat.iter().any(|p| is_in(*p))
+}
+
+/// Whether a corner spans no area with its neighbours; of spurs, whether the way goes back there.
+fn is_straight(flat: &[DVec2], middle: usize, is_spur: bool) -> bool {
+    let [a, b, c] = around(flat.len(), middle).map(|i| flat[i]);
+    let (before, after) = (b - a, c - b);
+    let is_back = before.dot(after) < 0.0;
+    before.perp_dot(after).abs() <= STRAIGHT * before.length() * after.length() && (is_back || !is_spur)
+}
+
+/// Whether all corners lie on a line, but for rounding.
+fn is_thin(flat: &[DVec2]) -> bool {
+    let far = |from: DVec2| {
+        flat.iter().copied().max_by(|a, b| (*a - from).length().total_cmp(&(*b - from).length()))
+    };
+    let Some(along) = far(flat[0]).and_then(|a| far(a).map(|b| b - a)) else { return true };
+    let across = |p: &DVec2| (*p - flat[0]).perp_dot(along).abs();
+    flat.iter().map(across).fold(0.0, f64::max) <= THIN * along.length_squared()
 }
 
 #[cfg(test)]
@@ -147,7 +177,7 @@ mod tests {
 
     fn is_filled_once(corners: &[DVec3]) {
         let (all, whole) = areas(corners).unwrap();
-        assert_eq!(all.len(), corners.len() - 2);
+        assert!(all.len() <= corners.len() - 2);
         assert!(all.iter().all(|area| *area >= -1e-12 * whole), "{all:?}");
         assert!((all.iter().sum::<f64>() / whole - 1.0).abs() < 1e-9, "{all:?} {whole}");
     }
@@ -169,6 +199,13 @@ mod tests {
             ring.rotate_left(from);
             if trial % 2 == 0 {
                 ring.reverse();
+            }
+            // Some corners doubled, or all.
+            if trial % 5 < 2 {
+                ring = ring
+                    .iter()
+                    .flat_map(|p| vec![*p; 1 + usize::from(trial % 5 == 0 || stream.unit() < 0.2)])
+                    .collect();
             }
             let normal = [DVec3::X, DVec3::NEG_Y, warp::square_to_sphere(stream.pair())][trial % 3];
             let frame = crate::math::Frame::new(normal);
@@ -213,10 +250,18 @@ mod tests {
         };
         assert!(areas(&star(1)).is_ok());
         assert!(areas(&star(2)).unwrap_err().contains("cross"));
+        // Not those that cross by rounding, nor spurs.
+        let thin =
+            [(0.0, 0.0), (1.0, 0.0), (0.999_99, 1e-7), (0.0, -1e-7)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        assert!(areas(&thin).is_ok());
+        let spur =
+            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 1.0)].map(|(x, y)| DVec3::new(x, 0.0, y));
+        let (all, whole) = areas(&spur).unwrap();
+        assert!((all.iter().sum::<f64>() - 0.5).abs() < 1e-12 && (whole - 0.5).abs() < 1e-12, "{all:?}");
         let bow = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 3.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
         assert!(areas(&bow).unwrap_err().contains("cross"));
         let mut many: Vec<DVec3> = (0..MOST).map(|i| DVec3::new(i as f64, (i % 2) as f64, 0.0)).collect();
         many.extend([DVec3::new(MOST as f64, -1.0, 0.0), DVec3::new(0.0, -1.0, 0.0)]);
-        assert!(areas(&many).unwrap_err().contains("up to 4096"));
+        assert!(areas(&many).unwrap_err().contains("up to 16384"));
     }
 }

@@ -1,6 +1,7 @@
 //! Where the numbers of a photon stand in a record, and what they may be.
 
 use super::class::{MOST_EMITTED, ON_SURFACE};
+use crate::error::plain;
 use crate::photons::{Flags, Photon};
 use glam::{DVec3, Vec3};
 
@@ -88,8 +89,8 @@ impl Layout {
     /// What is wrong with it, and what is allowed
     pub fn photon(&self, record: &[u8]) -> Result<(Photon, Option<u64>), String> {
         let vector = |places: [Place; 3]| DVec3::from_array(places.map(|place| place.read(record)));
-        let is = |name: &str, [x, y, z]: [f64; 3], allowed: &str| {
-            Err(format!("{name} is ({x}, {y}, {z}); allowed: {allowed}"))
+        let is = |name: &str, numbers: [f64; 3], allowed: &str| {
+            Err(format!("{name} is ({}); allowed: {allowed}", numbers.map(plain).join(", ")))
         };
         let (position, direction, power) =
             (vector(self.position), vector(self.direction), vector(self.power));
