@@ -9,7 +9,7 @@ mod xml;
 
 pub use export::{Exported, to_mitsuba};
 pub use import::{Imported, from_mitsuba};
-pub use open::{Opened, open};
+pub use open::{Opened, is_of_mitsuba, open};
 
 /// A file that stands beside another one.
 #[derive(Debug, Clone, PartialEq)]

@@ -66,7 +66,8 @@ pub fn open(source: &SceneSource, is_confined: bool) -> Result<Opened> {
     Ok(opened)
 }
 
-fn is_of_mitsuba(path: &Path) -> bool {
+/// Whether a file is read as a scene of Mitsuba: by the end of its name.
+pub fn is_of_mitsuba(path: &Path) -> bool {
     path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xml"))
 }
 

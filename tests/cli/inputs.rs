@@ -28,11 +28,7 @@ fn files_of_a_scene_are_not_written_over() {
         "4",
     ]);
     std::fs::remove_file(at("paint.exr")).unwrap();
-    let mut grid = b"VOL\x03".to_vec();
-    [1i32, 2, 2, 2, 1].iter().for_each(|n| grid.extend(n.to_le_bytes()));
-    [0.0f32, 0.0, 0.0, 1.0, 1.0, 1.0].iter().for_each(|x| grid.extend(x.to_le_bytes()));
-    (0..8).for_each(|_| grid.extend(1.0f32.to_le_bytes()));
-    std::fs::write(at("fog.vol"), grid).unwrap();
+    folder.grid("fog.vol", 1.0);
     folder.file(
         "room-object-0.ply",
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\

@@ -94,6 +94,15 @@ impl Folder {
         std::fs::write(&path, text).unwrap();
         path
     }
+
+    /// A grid of eight equal densities in the unit cube.
+    fn grid(&self, name: &str, density: f32) {
+        let mut bytes = b"VOL\x03".to_vec();
+        [1i32, 2, 2, 2, 1].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        [0.0f32, 0.0, 0.0, 1.0, 1.0, 1.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        (0..8).for_each(|_| bytes.extend(density.to_le_bytes()));
+        std::fs::write(self.0.path().join(name), bytes).unwrap();
+    }
 }
 
 fn text(path: &Path) -> &str {

@@ -84,13 +84,7 @@ fn a_state_has_one_run_at_a_time() {
 fn another_grid_is_another_scene() {
     let folder = Folder::new();
     let at = |name: &str| folder.0.path().join(name);
-    let grid = |density: f32| {
-        let mut bytes = b"VOL\x03".to_vec();
-        [1i32, 2, 2, 2, 1].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
-        [0.0f32, 0.0, 0.0, 1.0, 1.0, 1.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
-        (0..8).for_each(|_| bytes.extend(density.to_le_bytes()));
-        std::fs::write(at("fog.vol"), bytes).unwrap();
-    };
+    let grid = |density: f32| folder.grid("fog.vol", density);
     grid(1.0);
     let scene = folder.file(
         "scene.toml",

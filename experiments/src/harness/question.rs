@@ -4,7 +4,7 @@ use super::Digest;
 use anyhow::{Context, ensure};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use turbid::exchange::open;
+use turbid::exchange::{is_of_mitsuba, open};
 use turbid::scene::SceneSource;
 
 /// A study file, as text; what it means is for the experiment that it is put to.
@@ -66,8 +66,7 @@ impl Question {
             parts.push(digest.to_string().into_bytes());
         }
         // A scene of Mitsuba names its files in its own way.
-        let is_of_mitsuba = |file: &&PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml"));
-        for scene in named.iter().filter(is_of_mitsuba) {
+        for scene in named.iter().filter(|file| is_of_mitsuba(file)) {
             // What is wrong with it is told where it is read.
             let Ok(opened) = open(&SceneSource::new(scene), false) else { continue };
             for file in &opened.read {

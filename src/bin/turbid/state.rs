@@ -41,7 +41,7 @@ impl State {
         made_from: &serde_json::Value,
     ) -> anyhow::Result<Self> {
         let named = || format!("--state {}", file.display());
-        // A line, a line of JSON, a line with a digest of all that follows it, the numbers.
+        // A line, a line of JSON, a line with a digest of the second line and of the numbers, the numbers.
         let data = fs::metadata(file).with_context(named)?;
         let most = Film::byte_count(width, height) + HEADER_BYTES;
         if !data.is_file() || data.len() > most {

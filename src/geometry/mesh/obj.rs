@@ -146,11 +146,11 @@ impl Obj<'_> {
         if corners.len() < 3 {
             return Err(format!("a face of {} corners; allowed: 3 or more", corners.len()));
         }
-        let mut triangles = Vec::with_capacity(corners.len() - 2);
-        cut(corners, |(place, ..)| self.positions[place as usize], |triangle| triangles.push(triangle))
-            .map_err(|what| format!("a face of {what}"))?;
-        triangles.into_iter().for_each(|triangle| self.triangle(triangle));
-        Ok(())
+        let positions = std::mem::take(&mut self.positions);
+        let is_cut =
+            cut(&corners, |(place, ..)| positions[place as usize], |triangle| self.triangle(triangle));
+        self.positions = positions;
+        is_cut.map_err(|what| format!("a face of {what}"))
     }
 
     fn triangle(&mut self, corners: [Corner; 3]) {

@@ -296,12 +296,12 @@ pub(super) fn parse(bytes: &[u8], place: impl Fn(DVec3) -> DVec3, turn: Option<T
         return refuse("no faces; a mesh needs at least one");
     }
     // Now that all vertices are known, which may stand behind the faces.
+    let rings: Vec<u32> = rings.into_iter().map(|corner| corner as u32).collect();
     let (mut triangles, mut rest) = (Vec::with_capacity(lengths.len()), &rings[..]);
     for (index, length) in lengths.into_iter().enumerate() {
         let (ring, behind) = rest.split_at(length);
         rest = behind;
-        let corners = ring.iter().map(|corner| *corner as u32).collect();
-        if let Err(what) = cut(corners, |i: u32| positions[i as usize], |corners| triangles.push(corners)) {
+        if let Err(what) = cut(ring, |i: u32| positions[i as usize], |corners| triangles.push(corners)) {
             return refuse(format!("face {index} has {what}"));
         }
     }

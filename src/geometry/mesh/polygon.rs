@@ -18,12 +18,12 @@ const MOST: usize = 16384;
 /// # Errors
 /// what is wrong with a polygon whose sides cross, or that is not convex and has too many corners
 pub(super) fn cut<T: Copy>(
-    corners: Vec<T>,
+    corners: &[T],
     at: impl Fn(T) -> DVec3,
-    triangle: impl FnMut([T; 3]),
+    mut triangle: impl FnMut([T; 3]),
 ) -> Result<(), String> {
-    if corners.len() == 3 {
-        cut_convex(corners, triangle);
+    if let [a, b, c] = *corners {
+        triangle([a, b, c]);
         return Ok(());
     }
     let flat = flat(&corners.iter().map(|corner| at(*corner)).collect::<Vec<_>>());
@@ -33,7 +33,7 @@ pub(super) fn cut<T: Copy>(
             corners.len()
         ));
     }
-    match cut_ears(corners, flat, triangle) {
+    match cut_ears(corners.to_vec(), flat, triangle) {
         true => Ok(()),
         false => Err("sides that cross each other; allowed: polygons without".to_string()),
     }
@@ -166,7 +166,7 @@ mod tests {
         let whole = area(corners);
         let mut all = Vec::new();
         cut(
-            (0..corners.len()).collect(),
+            &(0..corners.len()).collect::<Vec<_>>(),
             |i| corners[i],
             |triangle: [usize; 3]| {
                 all.push(area(&triangle.map(|i| corners[i])).dot(whole.normalize()));
