@@ -37,7 +37,7 @@ pub struct Settings {
     #[arg(long, conflicts_with = "fresh")]
     pub reuse: bool,
     /// 960 pixels wide, of what the page has compared: the photon map, what is read along rays, the rival and the reference; the kept page
-    /// then leads to them
+    /// then leads to them. Each pixel has a quarter of the samples that the page's pixels have
     #[arg(long, conflicts_with_all = ["quick", "draft", "page"])]
     pub print: bool,
     /// Only write the page anew, from the numbers and pictures that are in its folder
