@@ -111,7 +111,7 @@ impl Asymptotics {
                 albedo,
                 if slowest.k < 0.999 { 0.1 } else { 2.0 },
                 1.0,
-                "with a decay below 0.999",
+                "those with a slowest decay below 0.999, of isotropic scattering from 0.263 on",
             )?;
         }
         let second = modes.get(1).unwrap_or(&none).k;

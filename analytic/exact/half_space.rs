@@ -42,7 +42,7 @@ pub struct Args {
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Azimuths of those directions, in radians, where scattering is not isotropic: that of propagation minus the beam's.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], requires = "mu", allow_negative_numbers = true)]
     azimuth: Vec<f64>,
     /// Depths in mean free paths, 0 or more, at which to give fluence and net flux downwards.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]

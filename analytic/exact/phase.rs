@@ -9,7 +9,7 @@ use turbid_analytic::Phase;
 /// How scattering turns light; isotropic when nothing is given.
 #[derive(clap::Args, Clone, Default)]
 pub struct PhaseArgs {
-    /// Henyey-Greenstein scattering of this mean cosine, -0.95 to 0.99.
+    /// Henyey-Greenstein scattering of this mean cosine: checked from -0.95 to 0.99, and answered beyond as far as its moments allow.
     #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, conflicts_with_all = ["rayleigh", "moments", "table"])]
     g: Option<f64>,
     /// With --g and --share: the mean cosine of a second Henyey-Greenstein term.

@@ -7,11 +7,27 @@ use crate::text::{one_line, panicked};
 use crate::{cases, format, output, plot, usage};
 use anyhow::{Result, bail, ensure};
 use clap::Parser;
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+/// The words of a command line, lists that begin with a negative number taken apart: `-1,2` alone would be an option that is not there.
+fn taken_apart(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let parts = |word: OsString| -> Vec<OsString> {
+        let list = word.to_str().and_then(|text| text.strip_prefix('-'));
+        let is_list = list.is_some_and(|rest| {
+            rest.contains(',') && rest.starts_with(|c: char| c == '.' || c.is_ascii_digit())
+        });
+        match word.to_str() {
+            Some(text) if is_list => text.split(',').map(OsString::from).collect(),
+            _ => vec![word],
+        }
+    };
+    words.flat_map(parts).collect()
+}
+
 fn run() -> Result<()> {
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse_from(taken_apart(std::env::args_os())) {
         Ok(cli) => cli,
         Err(error) => return usage::explain(&error),
     };

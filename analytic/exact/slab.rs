@@ -45,8 +45,8 @@ pub struct Args {
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
     /// Refractive index inside over outside, 0.25 to 4: faces that reflect and refract (fluxes and fluence). Gives also the
-    /// light that the first face sends back (`specular`), reflectances without it (`reflectance_diffuse`), and the part of
-    /// Lambertian light that one face reflects, from outside and from inside
+    /// light that the first face sends back (`specular`), what leaves that was scattered (`reflectance_diffuse`), and the part
+    /// of Lambertian light that one face reflects, from outside and from inside
     #[arg(verbatim_doc_comment, long, default_value_t = 1.0, allow_negative_numbers = true)]
     index: f64,
     /// For tables, which ask for the light of refracting faces by name, even where the index is 1.
@@ -61,7 +61,7 @@ pub struct Args {
     #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Azimuths of those directions, in radians: that of propagation minus that of the beam.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], requires = "mu", allow_negative_numbers = true)]
     azimuth: Vec<f64>,
     /// Orders of scattering to give one by one, 0 (direct light) to 100, to 1000 with isotropic scattering up to
     /// thickness 400

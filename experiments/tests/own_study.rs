@@ -173,6 +173,27 @@ fn what_cannot_be_studied_is_refused_in_one_line() {
 }
 
 /// A scene of Mitsuba, with a mesh beside it, is studied as the scene file that is made of it.
+/// What is refused leaves the results that are there.
+#[test]
+fn results_stay_where_a_later_study_is_refused() {
+    let (folder, file) = written(&of_a_ball());
+    let at = folder.path();
+    study(at, &["mine.toml", "--out", "out"]).assert().success();
+    let report = || std::fs::read(at.join("out/report.html")).unwrap();
+    let before = (results(at, "out"), report());
+    let narrow = of_a_ball().replace("radius = ", "radius = 1e-9 # ");
+    assert_ne!(narrow, of_a_ball());
+    std::fs::write(&file, narrow).unwrap();
+    for arguments in [&["mine.toml", "--out", "out"][..], &["mine.toml", "--dry-run"]] {
+        let said = refused(at, arguments);
+        assert!(
+            said.contains("mine.toml: the estimator \"") && said.contains("a gather radius of 1e-9 L"),
+            "{said}"
+        );
+    }
+    assert!(before == (results(at, "out"), report()));
+}
+
 #[test]
 fn a_scene_of_mitsuba_is_that_which_is_made_of_it() {
     let room = "<scene version='3.0.0'><integrator type='volpath'/>

@@ -186,6 +186,25 @@ fn bad_values_give_one_line_and_exit_2() {
     }
 }
 
+/// A scene of one's own that is refused is named with its line, and one without a camera by its file.
+#[test]
+fn scenes_that_are_none_are_refused_by_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let run = sweep().arg("--scene").arg(&path).assert().code(2).stdout("");
+        String::from_utf8(run.get_output().stderr.clone()).unwrap()
+    };
+    let region =
+        "[[regions]]\nshape = { slab = { top = 0, thickness = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n";
+    let beam = "[[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1, section = \"unbounded\" }\n";
+    let said = refused("white.toml", &format!("{}{beam}", region.replace("0.5", "1.7")));
+    assert!(said.contains("white.toml:4:10: albedo is 1.7; allowed: 0 to 1"), "{said}");
+    let said = refused("dark.toml", &format!("{region}{beam}"));
+    assert!(said.contains("dark.toml: the scene has no camera; allowed: "), "{said}");
+}
+
 /// A run goes on where it was interrupted, prints the same again, and says how to repeat a scene.
 #[test]
 fn a_run_is_kept_in_files() {

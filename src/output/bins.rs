@@ -63,6 +63,7 @@ mod tests {
             n: 1,
             no_error: None,
             bin: None,
+            spread: crate::sensor::Spread::default(),
         }
     }
 

@@ -160,9 +160,9 @@ struct BinRow<'a> {
     sensor: &'a str,
     quantity: &'a str,
     unit: &'static str,
-    i: Option<usize>,
-    j: Option<usize>,
-    k: Option<usize>,
+    bin_i: Option<usize>,
+    bin_j: Option<usize>,
+    bin_k: Option<usize>,
     x: Option<f64>,
     y: Option<f64>,
     z: Option<f64>,
@@ -173,7 +173,7 @@ struct BinRow<'a> {
 }
 
 const BIN_COLUMNS: [&str; 12] =
-    ["sensor", "quantity", "unit", "i", "j", "k", "x", "y", "z", "mean", "std_error", "n"];
+    ["sensor", "quantity", "unit", "bin_i", "bin_j", "bin_k", "x", "y", "z", "mean", "std_error", "n"];
 
 fn write_bins<'a>(
     out: &mut dyn Write,
@@ -187,9 +187,9 @@ fn write_bins<'a>(
         sensor: &r.sensor,
         quantity: &r.quantity,
         unit: r.unit,
-        i: index(r, 0),
-        j: index(r, 1),
-        k: index(r, 2),
+        bin_i: index(r, 0),
+        bin_j: index(r, 1),
+        bin_k: index(r, 2),
         x: middle(r, 0),
         y: middle(r, 1),
         z: middle(r, 2),
@@ -316,6 +316,7 @@ mod tests {
             n: 64,
             no_error: None,
             bin: None,
+            spread: crate::sensor::Spread::default(),
         }
     }
 
@@ -330,6 +331,8 @@ mod tests {
         let csv = text(Format::Csv);
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines[0], [&BIN_COLUMNS.join(","), "why", &RUN_COLUMNS.join(",")].join(","));
+        let names: std::collections::BTreeSet<&str> = lines[0].split(',').collect();
+        assert_eq!(names.len(), lines[0].split(',').count(), "two columns of one name");
         let run = ",,light,7,0..,,,,1000,,,50,,,,,,,,,,,cone,,,0.1.0,";
         assert_eq!(
             lines[1],
@@ -344,10 +347,10 @@ mod tests {
         assert_eq!((json["format"].as_u64(), json["run"]["seed"].as_u64()), (Some(2), Some(7)));
         assert!(json["run"]["radius"].is_null() && json["run"]["kernel"] == "cone");
         let json = &json["rows"];
-        assert_eq!((json[0]["j"].as_u64(), json[0]["z"].as_f64()), (Some(2), Some(1e-300)));
-        assert!(json[1]["x"].is_null() && json[2]["i"].is_null());
+        assert_eq!((json[0]["bin_j"].as_u64(), json[0]["z"].as_f64()), (Some(2), Some(1e-300)));
+        assert!(json[1]["x"].is_null() && json[2]["bin_i"].is_null());
         let table = text(Format::Text);
-        assert!(table.lines().next().unwrap().contains(" i  j  k "), "{table}");
+        assert!(table.lines().next().unwrap().contains(" bin_i  bin_j  bin_k "), "{table}");
         assert_eq!(table.lines().count(), 4);
     }
 

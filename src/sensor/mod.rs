@@ -68,6 +68,22 @@ pub struct Measurement {
     /// Which bin of the sensor it is of, if the sensor has bins.
     #[serde(skip)]
     pub bin: Option<Bin>,
+    /// How well the standard error itself is known.
+    #[serde(skip)]
+    pub spread: Spread,
+}
+
+/// What contributions say of the variance of their mean, for whoever puts several measurements together.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Spread {
+    /// Standard error of the mean, whether or not it can be trusted.
+    pub std_error: f64,
+    /// Relative variance of the variance.
+    pub vov: f64,
+    /// Paths that brought something; none where contributions are not of paths.
+    pub contributing: Option<u64>,
+    /// Whether the largest contributions of paths have too heavy a tail ([`Tail::is_heavy`]).
+    pub is_heavy: bool,
 }
 
 /// Which of a sensor's bins.
@@ -235,7 +251,8 @@ fn measurements(
         .enumerate()
         .map(|(channel, suffix)| {
             let m = &moments[channel];
-            let error = std_error(m, tails.map(|tails| &tails[channel]), source);
+            let tail = tails.map(|tails| &tails[channel]);
+            let error = std_error(m, tail, source);
             let error = error.map(|error| libm::hypot(error, of_power[channel] * m.mean()));
             Measurement {
                 sensor: sensor.name.clone(),
@@ -246,6 +263,12 @@ fn measurements(
                 n: m.n(),
                 no_error: error.err(),
                 bin,
+                spread: Spread {
+                    std_error: m.std_error(),
+                    vov: m.vov(),
+                    contributing: tail.map(Tail::contributing),
+                    is_heavy: tail.is_some_and(|tail| tail.is_heavy(m)),
+                },
             }
         })
         .collect()

@@ -339,6 +339,11 @@ fn statistics_of_a_picture_tell_its_work() {
     ] {
         assert!(said.contains(told), "{told} is not in:\n{said}");
     }
+    // Photons that importance splits end more often than they are sent out.
+    let split = "; what importance split counts by its parts";
+    assert!(!said.contains(split));
+    let led = succeeds(&[&arguments[..], &["--importance"], &QUICK].concat());
+    assert!(led.contains(split), "{led}");
     let full = succeeds(&[&arguments[..], &["--plan", "full"], &QUICK].concat());
     assert!(!full.contains("tracking       0 ") && !full.contains("; 0 projection cells"), "{full}");
     assert!(!full.contains("gathers        caustic  0\n"), "{full}");

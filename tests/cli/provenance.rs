@@ -78,6 +78,11 @@ fn tables_say_what_they_were_made_with() {
         refuses_naming(&[&given[..], ignored].concat(), &[ignored[0]]);
     }
     refuses_naming(&[&photons[..], &["--orders", "2..", "--planes", "--ray-k", "20"]].concat(), &["--ray-k"]);
+    // The built-in slab has no sensor of radiance: what reads rays would do nothing.
+    let slab = ["measure", "slab", "--with", "photons", "--photons", "1000"];
+    for option in [&["--planes"][..], &["--ray-radius", "0.1"], &["--beam-radius", "0.1"]] {
+        refuses_naming(&[&slab[..], option].concat(), &[option[0], "allowed: with sensors of radiance"]);
+    }
     refuses_naming(
         &["render", "fogbox", "-o", "never.exr", "--beam-radius", "0.1", "--ray-k", "5"],
         &["--ray-k"],

@@ -290,7 +290,14 @@ impl Geometry {
         let found = self.quantities.iter().find(|(names, ..)| names.contains(&name.as_str()));
         let by_order = format!("quantity {quantity} is not answered by order");
         let Some((_, wanted, options, needed)) = found else {
-            let elsewhere = format!("quantity {quantity} of {called} is not answered here");
+            let own = self
+                .quantities
+                .iter()
+                .flat_map(|(names, ..)| names.iter())
+                .filter(|name| !name.ends_with(" by order"));
+            let allowed = own.copied().collect::<Vec<_>>().join(", ");
+            let elsewhere =
+                format!("quantity {quantity} of {called} is not answered here; allowed: {allowed}");
             return Ok(Err(if ordered { by_order } else { elsewhere }));
         };
         let absent = if ordered { by_order } else { format!("there is no {quantity} for these parameters") };

@@ -282,9 +282,6 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
         predictions.push(own);
     }
     let (total, missing) = (sets.iter().map(Vec::len).sum(), tasks.len());
-    write_if_changed(&settings.out.join("predictions.csv"), &prediction_table(&experiments, &predictions)?)?;
-    watch.say(&opening(study.name, settings, total, missing, predictions.iter().map(Vec::len).sum()));
-
     if !settings.merge.is_empty() && missing > 0 {
         let names: Vec<String> =
             tasks.iter().take(3).map(|t| format!("{}/{}", t.experiment.name, t.cell.id())).collect();
@@ -293,13 +290,18 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
             names.join(", ")
         );
     }
+    write_if_changed(&settings.out.join("predictions.csv"), &prediction_table(&experiments, &predictions)?)?;
+    watch.say(&opening(study.name, settings, total, missing, predictions.iter().map(Vec::len).sum()));
     let start = Instant::now();
     let done = measure(tasks, &manifest, settings, watch)?;
     let wall_seconds = start.elapsed().as_secs_f64();
+    // A question is one experiment: what was concluded before stays, rather than a report that says nothing.
+    if let Some((experiment, failure)) =
+        done.failures.iter().next().filter(|_| settings.part.is_some() || settings.question.is_some())
+    {
+        bail!("{experiment}: {failure}");
+    }
     if settings.part.is_some() {
-        if let Some((experiment, failure)) = done.failures.iter().next() {
-            bail!("{experiment}: {failure}");
-        }
         return Ok(Outcome { report: settings.out.clone(), sections: Vec::new(), measured: done.measured });
     }
 

@@ -84,11 +84,3 @@ pub fn asked(settings: &Settings) -> anyhow::Result<Arc<OwnStudy>> {
     *known = Some((key, study.clone()));
     Ok(study)
 }
-
-/// Refuses a file that cannot be studied, before anything is measured.
-///
-/// # Errors
-/// File, key and what is allowed
-pub fn check(settings: &Settings) -> anyhow::Result<()> {
-    asked(settings).map(|_| ())
-}

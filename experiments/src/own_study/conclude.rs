@@ -2,12 +2,14 @@
 
 use super::asked::{OwnStudy, asked};
 use super::data::{self, Data, Half, Setting};
+use super::reference::Sampler;
 use super::{figures, tables, words};
 use crate::harness::{
     Cells, Estimate, Headline, Section, Settings, Table, Unit, number, percent, signed, with_error,
 };
 use crate::prediction::Prediction;
 use crate::theory::exponent_of_means;
+use turbid::sensor::FEWEST_PATHS;
 use turbid::stats::Moments;
 
 /// Concludes.
@@ -326,6 +328,12 @@ fn references(all: &[Data]) -> Option<Table> {
     })
 }
 
+/// The first of some names.
+fn some(names: &[&str]) -> String {
+    let more = if names.len() > 10 { " and others" } else { "" };
+    format!("{}{more}", names.iter().take(10).copied().collect::<Vec<_>>().join(", "))
+}
+
 fn notes(study: &OwnStudy, all: &[Data]) -> Vec<String> {
     let mut notes = vec![
         "One pass of photons fills the maps of a replicate, and all estimators read them at the same places. CPU times are of this \
@@ -342,17 +350,31 @@ fn notes(study: &OwnStudy, all: &[Data]) -> Vec<String> {
             .places
             .iter()
             .zip(&data.known)
-            .filter(|(_, known)| !known.is_usable())
+            .filter(|(_, known)| !known.is_usable() && !known.error.is_nan())
             .map(|(place, _)| place.name.as_str())
             .collect();
         if !unusable.is_empty() {
-            let shown = unusable.iter().take(10).copied().collect::<Vec<_>>().join(", ");
-            let more = if unusable.len() > 10 { " and others" } else { "" };
             notes.push(format!(
                 "{scene}: the reference of {} of {} places is 0, or has an error of more than a fifth of it: they are not among the errors: \
-                 {shown}{more}.",
+                 {}.",
                 unusable.len(),
-                data.known.len()
+                data.known.len(),
+                some(&unusable)
+            ));
+        }
+        let tailed = data.point.places.iter().zip(&data.known).filter(|(_, known)| known.error.is_nan());
+        let tailed: Vec<&str> = tailed.map(|(place, _)| place.name.as_str()).collect();
+        if !tailed.is_empty() {
+            notes.push(format!(
+                "{scene}: the reference of {} of {} places has no standard error, since rare large contributions carry it, or fewer than \
+                 {FEWEST_PATHS} paths: they are not among the errors: {}. {}.",
+                tailed.len(),
+                data.known.len(),
+                some(&tailed),
+                match data.reference.sampler {
+                    Sampler::Paths => "Sensors with bins can be told by reference.with = \"light\"; or let reference.most be larger",
+                    Sampler::Light => "Let reference.most be larger",
+                }
             ));
         }
         if data.reference.is_cut && data.known.iter().any(|k| !k.is_exact) {

@@ -2,12 +2,14 @@
 
 use super::asked::OwnStudy;
 use super::measure::{maps_group, reference_group};
+use super::place::Place;
 use super::points::Point;
-use super::reference::{BATCHES, Reference};
+use super::reference::{self, BATCHES, Reference, Sampler};
 use super::words;
 use crate::harness::{Cells, Estimate};
 use anyhow::Context;
 use turbid::estimators::Estimator;
+use turbid::sensor::Spread;
 use turbid::stats::{Moments, jackknife};
 
 /// What a place is compared with.
@@ -15,7 +17,7 @@ use turbid::stats::{Moments, jackknife};
 pub struct Known {
     /// The value.
     pub value: f64,
-    /// Bound of an exact value, standard error of a sampled one.
+    /// Bound of an exact value, standard error of a sampled one; not a number where the tails of its samples leave none.
     pub error: f64,
     /// Whether it is exact.
     pub is_exact: bool,
@@ -196,7 +198,9 @@ impl<'a> Data<'a> {
         let mut known = Vec::with_capacity(point.places.len());
         for (place, exact) in point.places.iter().zip(&reference.exact) {
             let sampled = cells.moments(&case, &place.name)?;
-            let sampled = (sampled.mean(), sampled.std_error());
+            let error =
+                if is_known(cells, (point, place), reference)? { sampled.std_error() } else { f64::NAN };
+            let sampled = (sampled.mean(), error);
             let (value, error) = exact.unwrap_or(sampled);
             known.push(Known { value, error, is_exact: exact.is_some(), sampled });
         }
@@ -328,6 +332,28 @@ fn noise(errors: &[Vec<f64>], known: &[Known], usable: &[usize]) -> (f64, f64) {
         variance += 4.0 * bias * bias * square + 2.0 * square * square;
     }
     (floor / places, variance.sqrt() / places)
+}
+
+/// Whether the batches of a place have a standard error together; those of a block of pixels tell nothing of it.
+fn is_known(cells: &Cells, (point, place): (&Point, &Place), reference: &Reference) -> anyhow::Result<bool> {
+    if point.picture.is_some() {
+        return Ok(true);
+    }
+    let [errors, vovs, contributing, heavy] = words::spread(point);
+    let values = |case: &str| cells.values(case, &place.name);
+    let (errors, vovs, heavy) = (values(&errors)?, values(&vovs)?, values(&heavy)?);
+    let paths = match reference.sampler {
+        Sampler::Paths => values(&contributing)?.into_iter().map(|paths| Some(paths as u64)).collect(),
+        Sampler::Light => vec![None; errors.len()],
+    };
+    let spreads = errors.into_iter().zip(vovs).zip(heavy).zip(paths);
+    let spread = |(((std_error, vov), heavy), contributing)| Spread {
+        std_error,
+        vov,
+        contributing,
+        is_heavy: heavy > 0.0,
+    };
+    Ok(reference::is_known(&spreads.map(spread).collect::<Vec<_>>(), reference.samples))
 }
 
 fn rival(

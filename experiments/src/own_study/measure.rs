@@ -6,6 +6,7 @@ use super::points::{Point, reach};
 use super::reference::{BATCHES, Sampler, batch};
 use super::words;
 use crate::harness::{CellId, CellOutput, Group, Settings};
+use anyhow::Context;
 use std::sync::Arc;
 use turbid::photons::PhotonMap;
 use turbid::photons::beams::BeamMap;
@@ -54,6 +55,42 @@ pub fn groups(settings: &Settings) -> Vec<Group> {
     groups
 }
 
+fn map_settings(
+    study: &OwnStudy,
+    point: &Point,
+    photons: u64,
+    settings: &Settings,
+    id: &CellId,
+) -> MapSettings {
+    MapSettings {
+        photons,
+        seed: settings.seed,
+        replicate: id.stream(words::NAME),
+        reach: reach(&point.estimators),
+        readings: study.file.measure.readings.0 as usize,
+        radiance: RadianceMaps::of(&point.estimators),
+    }
+}
+
+/// Photons of the maps that say whether they can be read.
+const FEW: u64 = 256;
+
+/// Refuses what maps of few photons refuse already, before anything is measured: a radius below what positions tell apart.
+/// Pictures are not tried.
+///
+/// # Errors
+/// Those of the maps, with the estimator's name
+pub fn try_estimators(study: &OwnStudy, settings: &Settings) -> anyhow::Result<()> {
+    for point in study.points.iter().filter(|point| point.picture.is_none()) {
+        let of = map_settings(study, point, FEW, settings, &CellId::of("trial", 0));
+        let maps = SensorMaps::fill(&point.scene, of, &NoProgress)?;
+        for estimator in &point.estimators {
+            maps.read(estimator).with_context(|| format!("the estimator \"{}\"", estimator.name()))?;
+        }
+    }
+    Ok(())
+}
+
 fn maps(
     study: &Arc<OwnStudy>,
     number: usize,
@@ -66,14 +103,7 @@ fn maps(
     if let Some(picture) = &point.picture {
         return pictures(point, picture, photons, settings, id);
     }
-    let of = MapSettings {
-        photons,
-        seed: settings.seed,
-        replicate: id.stream(words::NAME),
-        reach: reach(&point.estimators),
-        readings: study.file.measure.readings.0 as usize,
-        radiance: RadianceMaps::of(&point.estimators),
-    };
+    let of = map_settings(study, point, photons, settings, id);
     let maps = out.time(words::FILLING, |_| SensorMaps::fill(&point.scene, of, &NoProgress))?;
     out.count("photons emitted", photons);
     out.count("photons stored", maps.stored() as u64);
@@ -133,8 +163,17 @@ fn sampled(
     let of = (settings.seed, id.stream(words::NAME));
     let measured = out.time(words::SAMPLING, |_| batch(point, reference.sampler, reference.samples, of))?;
     let case = words::reference(point);
-    for (place, (mean, _)) in point.places.iter().zip(&measured) {
-        out.push(case.as_str(), place.name.as_str(), *mean);
+    let [errors, vovs, contributing, heavy] = words::spread(point);
+    for (place, batch) in point.places.iter().zip(&measured) {
+        let mut push = |case: &str, number: f64| out.push(case, place.name.as_str(), number);
+        push(&case, batch.mean);
+        let Some(spread) = batch.spread else { continue };
+        push(&errors, spread.std_error);
+        push(&vovs, spread.vov);
+        push(&heavy, f64::from(u8::from(spread.is_heavy)));
+        if let Some(paths) = spread.contributing {
+            push(&contributing, paths as f64);
+        }
     }
     out.count("samples of references", reference.samples);
     Ok(out)

@@ -20,8 +20,8 @@ mod solved;
 mod tables;
 mod words;
 
-use crate::harness::{Asked, Experiment};
-use asked::check;
+use crate::harness::{Asked, Experiment, Settings};
+use anyhow::Context;
 
 /// The experiment.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -36,3 +36,13 @@ pub const EXPERIMENT: Experiment = Experiment {
 
 /// What files of the user's are put to.
 pub const ASKED: Asked = Asked { experiment: EXPERIMENT, check, dry_run: dry_run::dry_run };
+
+/// Refuses a file that cannot be studied, before anything is measured.
+///
+/// # Errors
+/// File, key and what is allowed
+fn check(settings: &Settings) -> anyhow::Result<()> {
+    let study = asked::asked(settings)?;
+    let file = || settings.question_file.as_ref().map(|file| file.display().to_string()).unwrap_or_default();
+    measure::try_estimators(&study, settings).with_context(file)
+}

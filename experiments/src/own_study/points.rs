@@ -187,8 +187,13 @@ fn choose(measure: &MeasureFile, sensors: &mut Vec<SensorFile>) -> anyhow::Resul
     };
     for name in names {
         let own: Vec<&SensorFile> = sensors.iter().filter(|sensor| sensor.name == *name).collect();
-        let known = || sensors.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", ");
-        ensure!(!own.is_empty(), "the scene has no sensor {name:?}; it has: {}", known());
+        let known: BTreeSet<&str> =
+            sensors.iter().filter(|sensor| is_of_maps(sensor)).map(|sensor| sensor.name.as_str()).collect();
+        ensure!(
+            !own.is_empty(),
+            "the scene has no sensor {name:?}; maps answer: {}",
+            known.into_iter().collect::<Vec<_>>().join(", ")
+        );
         ensure!(
             own.iter().any(|sensor| is_of_maps(sensor)),
             "no map answers {name:?}; allowed: fluence, radiance, mean-fluence, mean-radiance"

@@ -8,7 +8,8 @@ use super::words;
 use crate::harness::{CellId, Settings};
 use anyhow::{Context, ensure};
 use turbid::scene::Orders;
-use turbid::sensor::{Measurement, PathSettings, TallySettings, by_paths, by_tallies};
+use turbid::sensor::{FEWEST_PATHS, Measurement, PathSettings, Spread, TallySettings, by_paths, by_tallies};
+use turbid::stats::HEAVY_TAIL;
 use turbid::transport::NoProgress;
 
 /// Batches of a sampled reference.
@@ -55,7 +56,37 @@ const PILOT_OF_PLACE: (u64, u64) = (1 << 8, 1 << 13);
 const FEWEST: u64 = 64;
 const FEWEST_OF_PIXEL: u64 = 2;
 
-/// One batch: the mean of each place and its standard error, where it has one.
+/// What one batch says of one place.
+#[derive(Debug, Clone, Copy)]
+pub struct Batch {
+    /// The mean.
+    pub mean: f64,
+    /// Its standard error, where it has one.
+    pub error: Option<f64>,
+    /// How well that is known; of blocks of pixels nothing tells.
+    pub spread: Option<Spread>,
+}
+
+/// Part of the batches that may have heavy tails: of bounded values far fewer have.
+const HEAVY: usize = BATCHES as usize / 4;
+
+/// Whether batches of so many samples each have a standard error together, as a measurement of all their samples would.
+pub fn is_known(batches: &[Spread], samples: u64) -> bool {
+    let n = samples as f64;
+    let (mut fourth, mut second) = (0.0, 0.0);
+    for spread in batches {
+        let squares = spread.std_error * spread.std_error * n * (n - 1.0);
+        fourth += (spread.vov + 1.0 / n) * squares * squares;
+        second += squares;
+    }
+    let vov = if second > 0.0 { fourth / (second * second) - 1.0 / (n * batches.len() as f64) } else { 0.0 };
+    let contributing: Option<u64> = batches.iter().map(|spread| spread.contributing).sum();
+    vov <= HEAVY_TAIL
+        && contributing.is_none_or(|paths| paths >= FEWEST_PATHS)
+        && batches.iter().filter(|spread| spread.is_heavy).count() < HEAVY
+}
+
+/// One batch, place by place.
 ///
 /// # Errors
 /// Those of the sampler
@@ -64,10 +95,11 @@ pub fn batch(
     sampler: Sampler,
     samples: u64,
     (seed, replicate): (u64, u64),
-) -> anyhow::Result<Vec<(f64, Option<f64>)>> {
+) -> anyhow::Result<Vec<Batch>> {
     let scene = &point.scene;
     if let Some(picture) = &point.picture {
-        return Ok(picture.by_paths(scene, samples, (seed, replicate))?);
+        let blocks = picture.by_paths(scene, samples, (seed, replicate))?;
+        return Ok(blocks.into_iter().map(|(mean, error)| Batch { mean, error, spread: None }).collect());
     }
     let measured: Vec<Measurement> = match sampler {
         Sampler::Paths => {
@@ -80,14 +112,14 @@ pub fn batch(
             by_tallies(scene, &settings, &NoProgress)?.measurements
         }
     };
-    Ok(measured.iter().map(|m| (m.mean, m.std_error)).collect())
+    Ok(measured.iter().map(|m| Batch { mean: m.mean, error: m.std_error, spread: Some(m.spread) }).collect())
 }
 
 /// Root mean square of the relative errors of the first group of places; none while one is not known.
-fn relative_error(point: &Point, measured: &[(f64, Option<f64>)]) -> Option<f64> {
+fn relative_error(point: &Point, measured: &[Batch]) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
-    for ((mean, error), _) in measured.iter().zip(&point.places).filter(|(_, place)| point.is_main(place)) {
-        sum += ((*error)? / mean).powi(2);
+    for (batch, _) in measured.iter().zip(&point.places).filter(|(_, place)| point.is_main(place)) {
+        sum += (batch.error? / batch.mean).powi(2);
         count += 1.0;
     }
     f64::is_finite(sum).then(|| (sum / count).sqrt())
@@ -164,5 +196,71 @@ impl Reference {
         let all = needed.map_or(most as f64, |needed| (1.5 * needed).min(most as f64));
         let samples = ((all / BATCHES as f64).ceil() as u64).max(fewest);
         Ok(Reference { solved, exact, sampler, samples, is_cut })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use turbid::rng::{Purpose, Stream};
+    use turbid::stats::{Moments, Tail};
+
+    const SAMPLES: u64 = 2000;
+
+    /// Batches of numbers made of uniform ones.
+    fn batches(seed: u64, number: impl Fn(f64) -> f64) -> Vec<Spread> {
+        let one = |batch: u64| {
+            let mut stream = Stream::new(31, Purpose::Synthetic, seed, batch);
+            let (mut moments, mut tail) = (Moments::new(), Tail::default());
+            for _ in 0..SAMPLES {
+                let x = number(stream.unit());
+                moments.push(x);
+                tail.push(x);
+            }
+            Spread {
+                std_error: moments.std_error(),
+                vov: moments.vov(),
+                contributing: Some(tail.contributing()),
+                is_heavy: tail.is_heavy(&moments),
+            }
+        };
+        (0..BATCHES).map(one).collect()
+    }
+
+    /// Exponential numbers have an error, and so have rare ones of one size; those without a variance have none, nor have too few.
+    #[test]
+    fn errors_that_a_measurement_would_not_have_are_refused() {
+        let exponential = |u: f64| -turbid::math::ln(1.0 - u);
+        let rare = |u: f64| f64::from(u8::from(u < 0.1));
+        let known = |number: &dyn Fn(f64) -> f64| {
+            (0..20).filter(|&seed| is_known(&batches(seed, number), SAMPLES)).count()
+        };
+        assert_eq!((known(&exponential), known(&rare)), (20, 20));
+        // Shapes of 0.7 and 1: an infinite variance.
+        assert_eq!(known(&|u| libm::pow(1.0 - u, -0.7)), 0);
+        assert_eq!(known(&|u| 1.0 / (1.0 - u)), 0);
+        assert_eq!(known(&|u| f64::from(u8::from(u < 0.01))), 0);
+    }
+
+    /// The variance of variance of all samples is put together from those of the batches: 16 numbers equal to n, all others 0, have 1/16; in
+    /// one batch 1/4, of all, where the others have nothing.
+    #[test]
+    fn variances_of_variances_are_put_together() {
+        let of = |largest: &[usize]| {
+            let one = |count: &usize| {
+                let values = (0..SAMPLES as usize).map(|i| if i < *count { 1.0 } else { 0.0 });
+                let moments: Moments = values.collect::<Vec<f64>>().iter().collect();
+                Spread {
+                    std_error: moments.std_error(),
+                    vov: moments.vov(),
+                    contributing: None,
+                    is_heavy: false,
+                }
+            };
+            is_known(&largest.iter().map(one).collect::<Vec<_>>(), SAMPLES)
+        };
+        assert!(of(&[1; 16]));
+        assert!(!of(&[4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]));
+        assert!(!of(&[1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0]));
     }
 }

@@ -26,6 +26,12 @@ pub fn reference(point: &Point) -> String {
     format!("{}reference", scene(point))
 }
 
+/// How well the errors of its batches are known: standard error, variance of variance, contributing paths, heavy tails.
+pub fn spread(point: &Point) -> [String; 4] {
+    ["errors", "variances of variance", "contributing", "heavy tails"]
+        .map(|what| format!("{}, {what}", reference(point)))
+}
+
 /// The phase of the work that an estimator's reading is.
 pub fn reading(estimator: usize) -> String {
     format!("reading {estimator}")

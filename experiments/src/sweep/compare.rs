@@ -49,8 +49,9 @@ impl Test {
     pub fn line(&self) -> String {
         let allowed =
             if self.allowed > 0.0 { format!(", explained {:.2e}", self.allowed) } else { String::new() };
+        let tail = if self.smallest.is_none() { ", heavy tail: no verdict" } else { "" };
         format!(
-            "{}: {:.5e} for {:.5e}, difference {:+.2e} ({:+.1} %), error {:.2e}{allowed}, p {:.1e}",
+            "{}: {:.5e} for {:.5e}, difference {:+.2e} ({:+.1} %), error {:.2e}{allowed}, p {:.1e}{tail}",
             self.cell,
             self.value,
             self.expected,

@@ -268,7 +268,11 @@ fn one(settings: &Settings) -> anyhow::Result<u8> {
         let smallest = read_text(Path::new(path), MOST_OF_A_RECORD).unwrap_or_default();
         print(|out| {
             write!(out, "the smallest scene that shows it, {path}:\n{smallest}\n")?;
-            writeln!(out, "again: cargo run --release --bin sweep -- --seed {seed} --scene {path}")
+            writeln!(
+                out,
+                "again: cargo run --release --bin sweep -- --seed {seed} --scene {path}{}",
+                settings.own()
+            )
         })?;
     }
     Ok(verdict.code())
@@ -356,11 +360,11 @@ fn many(settings: &Settings) -> anyhow::Result<u8> {
     };
     let records: Vec<Record> =
         on_threads(settings.threads, || seeds.par_iter().with_max_len(1).map(examine).collect())?;
-    summary(&records)
+    summary(settings, &records)
 }
 
 /// The table, and what the run says.
-fn summary(records: &[Record]) -> anyhow::Result<u8> {
+fn summary(settings: &Settings, records: &[Record]) -> anyhow::Result<u8> {
     // Holm over all confirmations of the run: each tests one number, chosen on other data.
     let alarms: Vec<(u64, &Alarm)> =
         records.iter().flat_map(|r| r.found.alarms.iter().map(|a| (r.seed, a))).collect();
@@ -425,7 +429,8 @@ fn summary(records: &[Record]) -> anyhow::Result<u8> {
             if let Some(path) = &record.smallest {
                 writeln!(out, "    the smallest scene that shows it: {path}")?;
             }
-            writeln!(out, "    again: cargo run --release --bin sweep -- --seed {}", record.seed)?;
+            let (seed, own) = (record.seed, settings.own());
+            writeln!(out, "    again: cargo run --release --bin sweep -- --seed {seed}{own}")?;
         }
         let seconds: f64 = records.iter().map(|r| r.seconds).sum();
         writeln!(

@@ -62,6 +62,12 @@ fn seeds(text: &str) -> Result<Range<u64>, String> {
 }
 
 impl Settings {
+    /// The options that what a scene shows depends on, where they are not the usual ones: as words of a command.
+    pub fn own(&self) -> String {
+        let own = [("--effort", self.effort), ("--control", self.control)].into_iter();
+        own.filter(|(_, value)| *value != 1.0).map(|(option, value)| format!(" {option} {value}")).collect()
+    }
+
     /// How much each method may do.
     ///
     /// # Errors

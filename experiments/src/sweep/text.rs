@@ -1,12 +1,13 @@
 //! A scene as text, with the files that it names.
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
-use turbid::input::{read, read_text};
+use turbid::exchange::open;
+use turbid::input::read;
 use turbid::output::write_atomically;
-use turbid::scene::{Scene, SceneFile};
+use turbid::scene::{Scene, SceneFile, SceneSource};
 
 /// Larger files of a scene are refused.
 const MOST_BYTES: u64 = 1 << 28;
@@ -21,19 +22,24 @@ pub struct SceneText {
 }
 
 impl SceneText {
-    /// A scene file, and the files beside it that it names.
+    /// A scene that a file describes, and the files beside it that it names.
     ///
     /// # Errors
-    /// a file that cannot be read, or is no TOML
+    /// what is no scene, or has no camera, with file and line
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let text = read_text(path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
-        let table: Table =
-            toml::from_str(&text).map_err(|e| anyhow::anyhow!("{}: {}", path.display(), e.message()))?;
-        let folder = path.parent().unwrap_or(Path::new("."));
+        let source = SceneSource::new(path);
+        let opened = open(&source, false)?;
+        let scene = opened.scene().map_err(|error| error.within(&source.name()))?;
+        ensure!(
+            scene.camera().is_some(),
+            "{}: the scene has no camera; allowed: one with [camera]",
+            source.name()
+        );
+        let table: Table = toml::from_str(&opened.file.to_toml()?)?;
         let (mut files, mut names) = (BTreeMap::new(), Vec::new());
         named_files(&Value::Table(table.clone()), &mut names);
         for name in names {
-            let path = folder.join(&name);
+            let path = opened.folder.join(&name);
             let bytes = read(&path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
             files.insert(name, bytes);
         }

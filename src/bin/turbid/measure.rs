@@ -42,7 +42,7 @@ use turbid::transport::WeightWindows;
 /// of a shield, a run may draw none of them, and nothing in it says so: its error is then many times too small. Take
 /// --weight-windows there, and do not believe plain paths unless these agree.
 ///
-/// A sensor with bins has a row for each: columns i, j, k number it along each axis, x, y, z are its middle. Flux and
+/// A sensor with bins has a row for each: columns bin_i, bin_j, bin_k number it along each axis, x, y, z are its middle. Flux and
 /// absorption are scored by photons as they pass; fluence and radiance by `photons` are estimates from maps at 4 random
 /// points of the bin, by `light` scores too: of flights or collisions, and of what each scattering sends to the bin.
 ///
@@ -426,6 +426,22 @@ impl Measure {
         let is_of_balls = |sensor: &Sensor| {
             matches!(sensor.quantity, Quantity::Fluence(_) | Quantity::Binned(Binned::Fluence { .. }))
         };
+        let is_along_rays = |sensor: &Sensor| {
+            matches!(sensor.quantity, Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. }))
+        };
+        if !scene.sensors().iter().any(is_along_rays) {
+            for (option, is_given, more) in [
+                ("--planes", self.planes, ""),
+                ("--ray-radius", ray_radius.is_some(), ""),
+                ("--beam-radius", beam_radius.is_some() && !self.beam_fluence, ", or with --beam-fluence"),
+            ] {
+                if is_given {
+                    bail!(
+                        "{option} reads light along rays, and no sensor has any; allowed: with sensors of radiance{more}"
+                    );
+                }
+            }
+        }
         let has_balls = !self.beam_fluence && scene.sensors().iter().any(is_of_balls)
             || (ray_radius, beam_radius) == (None, None);
         if self.progressive && has_balls && self.radius.is_none() {

@@ -74,7 +74,7 @@ impl Memory {
         let part = (left - fixed) / (bytes - fixed);
         if part.is_nan() || part <= 0.0 {
             bail!(
-                "{what} takes about {takes} of memory, {has} are {whose}; allowed: more --memory, a smaller picture"
+                "{what} takes about {takes} of memory, {has} are {whose}; allowed: more --memory, or fewer pixels and sensors"
             );
         }
         bail!("{what} takes about {takes} of memory, {has} are {whose}; allowed: {}", fits(part))

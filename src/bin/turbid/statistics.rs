@@ -42,10 +42,13 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
                     text,
                     "map {number:<3} {name} pass of {sent}: {absorbed} absorbed, {escaped} escaped, {truncated} truncated"
                 )?;
-                match refused {
-                    0 => writeln!(text)?,
-                    _ => writeln!(text, ", {refused} where a medium emits less than elsewhere or nothing")?,
+                if refused > 0 {
+                    write!(text, ", {refused} where a medium emits less than elsewhere or nothing")?;
                 }
+                if absorbed + escaped + truncated + refused > sent {
+                    write!(text, "; what importance split counts by its parts")?;
+                }
+                writeln!(text)?;
             }
         }
         if report.aimed < 1.0 {

@@ -61,6 +61,25 @@ pub fn refused(assert: assert_cmd::assert::Assert, parts: &[&str]) {
     assert!(output.stdout.is_empty());
 }
 
+/// Lists that begin with a negative number are lists, with commas as with blanks.
+#[test]
+fn lists_begin_with_negative_numbers_too() {
+    let asked = |words: &str| {
+        let run = exact().args(words.split(' ')).assert().success();
+        String::from_utf8(run.get_output().stdout.clone()).unwrap()
+    };
+    let slab = "slab --tau 1 --albedo 0.5 --format csv --mu ";
+    let blanks = asked(&format!("{slab}-1 -0.2 0.5"));
+    assert_eq!(blanks.lines().filter(|line| line.contains("radiance")).count(), 3, "{blanks}");
+    for list in ["-1,-0.2,0.5", "-1,-.2,0.5", "-1,-0.2 0.5", "-1 -0.2,0.5"] {
+        assert_eq!(asked(&format!("{slab}{list}")), blanks, "{list}");
+    }
+    refused(
+        exact().args("slab --tau 1 --albedo 0.5 --mu -1,x".split(' ')).assert(),
+        &["invalid value 'x'", "--mu"],
+    );
+}
+
 #[test]
 fn unanswered_rows_say_why() {
     let text = format!(
@@ -70,7 +89,7 @@ fn unanswered_rows_say_why() {
     let output = cases(&text).success().get_output().stdout.clone();
     let answers = rows(&output);
     for (answer, note) in
-        answers.iter().zip(["geometry cylinder", "quantity flow", "phase function", "quantity colour"])
+        answers.iter().zip(["geometry cylinder", "here; allowed: R, ", "phase function", "quantity colour"])
     {
         assert!(answer["value"].is_empty() && answer["note"].contains(note), "{answer:?}");
     }
