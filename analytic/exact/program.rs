@@ -11,17 +11,18 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// The words of a command line, lists that begin with a negative number taken apart: `-1,2` alone would be an option that is not there.
+/// The words of a command line, lists that begin with a negative number taken apart, and `-.5` as -0.5: `-1,2` alone would be an option
+/// that is not there.
 fn taken_apart(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
-    let parts = |word: OsString| -> Vec<OsString> {
-        let list = word.to_str().and_then(|text| text.strip_prefix('-'));
-        let is_list = list.is_some_and(|rest| {
-            rest.contains(',') && rest.starts_with(|c: char| c == '.' || c.is_ascii_digit())
-        });
-        match word.to_str() {
-            Some(text) if is_list => text.split(',').map(OsString::from).collect(),
-            _ => vec![word],
+    let whole =
+        |number: &str| number.strip_prefix("-.").map_or(number.into(), |rest| format!("-0.{rest}").into());
+    let parts = |word: OsString| match word.to_str() {
+        Some(list)
+            if list.starts_with('-') && list[1..].starts_with(|c: char| c == '.' || c.is_ascii_digit()) =>
+        {
+            list.split(',').map(whole).collect()
         }
+        _ => vec![word],
     };
     words.flat_map(parts).collect()
 }

@@ -71,7 +71,7 @@ fn lists_begin_with_negative_numbers_too() {
     let slab = "slab --tau 1 --albedo 0.5 --format csv --mu ";
     let blanks = asked(&format!("{slab}-1 -0.2 0.5"));
     assert_eq!(blanks.lines().filter(|line| line.contains("radiance")).count(), 3, "{blanks}");
-    for list in ["-1,-0.2,0.5", "-1,-.2,0.5", "-1,-0.2 0.5", "-1 -0.2,0.5"] {
+    for list in ["-1,-0.2,0.5", "-1,-.2,.5", "-1,-0.2 0.5", "-1 -0.2,0.5"] {
         assert_eq!(asked(&format!("{slab}{list}")), blanks, "{list}");
     }
     refused(
