@@ -16,8 +16,8 @@ pub enum Format {
     Json,
 }
 
-/// The version of a table as JSON: 1 was the rows alone.
-const FORMAT: u32 = 2;
+/// The version of a table as JSON: 1 was the rows alone, 2 called the numbers of bins i, j and k.
+const FORMAT: u32 = 3;
 
 /// What the numbers of a table were made with, the same in all rows: columns behind theirs as CSV, an object beside them as JSON.
 /// None of what the method does not ask.
@@ -344,7 +344,7 @@ mod tests {
         );
         assert_eq!(lines[3], format!("\"probe, centre\",fluence,W/L^2,,,,,,,2.0,,64{run}"));
         let json: serde_json::Value = serde_json::from_str(&text(Format::Json)).unwrap();
-        assert_eq!((json["format"].as_u64(), json["run"]["seed"].as_u64()), (Some(2), Some(7)));
+        assert_eq!((json["format"].as_u64(), json["run"]["seed"].as_u64()), (Some(3), Some(7)));
         assert!(json["run"]["radius"].is_null() && json["run"]["kernel"] == "cone");
         let json = &json["rows"];
         assert_eq!((json[0]["bin_j"].as_u64(), json[0]["z"].as_f64()), (Some(2), Some(1e-300)));

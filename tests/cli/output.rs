@@ -51,7 +51,7 @@ fn tables_csv_and_json_say_the_same() {
         assert_eq!(reader.headers().unwrap(), [&COLUMNS[..], &["why"], &RUN].concat());
         let records: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         let document: serde_json::Value = serde_json::from_str(&json).unwrap();
-        assert_eq!(document["format"], 2);
+        assert_eq!(document["format"], 3);
         let rows = document["rows"].as_array().unwrap();
         for (column, name) in RUN.iter().enumerate() {
             let of_json = match &document["run"][*name] {
