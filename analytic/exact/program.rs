@@ -11,15 +11,14 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// The words of a command line, lists that begin with a negative number taken apart, and `-.5` as -0.5: `-1,2` alone would be an option
+/// The words of a command line, lists of numbers that begin with a negative one taken apart, and `-.5` as -0.5: `-1,2` alone would be an option
 /// that is not there.
 fn taken_apart(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let whole =
         |number: &str| number.strip_prefix("-.").map_or(number.into(), |rest| format!("-0.{rest}").into());
+    let is_number = |part: &str| part.parse::<f64>().is_ok_and(f64::is_finite);
     let parts = |word: OsString| match word.to_str() {
-        Some(list)
-            if list.starts_with('-') && list[1..].starts_with(|c: char| c == '.' || c.is_ascii_digit()) =>
-        {
+        Some(list) if list.starts_with('-') && list.split(',').all(is_number) => {
             list.split(',').map(whole).collect()
         }
         _ => vec![word],

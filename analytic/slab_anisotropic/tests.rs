@@ -218,3 +218,35 @@ fn bounds_of_radiances_cover_plain_series_on_more_nodes() {
         }
     }
 }
+
+/// Slabs far thinner than the lowest nodes, scattering isotropically, against the integral equation: fluence and radiance within both bounds. The first
+/// one, at its lit face, was 24 times the bounds off.
+#[test]
+fn the_thinnest_slabs_are_within_their_bounds() {
+    let mut cases = vec![(3.37757149800944e-05, 0.6127988221751758, 0.9848402454752797)];
+    for tau in [1e-12, 5e-10, 7e-9, 1e-7, 2e-6, 1e-4, 1e-3] {
+        cases.extend([(tau, 0.54, 0.43), (tau, 0.99, 0.73), (tau, 0.84, 0.98)]);
+    }
+    for (tau, albedo, mu0) in cases {
+        for incidence in [Incidence::Beam { mu0 }, Incidence::Diffuse] {
+            let integral = crate::IsotropicSlab::new(tau, albedo, incidence).unwrap();
+            let medium = AnisotropicMedium::new(albedo, &Phase::isotropic()).unwrap();
+            let ordinates = medium.slab(tau, incidence).unwrap();
+            let agree = |what: &str, a: Value, b: Value| {
+                let (off, most) = ((a.value - b.value).abs(), a.error + b.error);
+                assert!(
+                    off <= most,
+                    "{what}, tau {tau:e}, albedo {albedo}, {incidence:?}: off {off:e}, bounds {most:e}"
+                );
+            };
+            for part in [0.0, 0.5, 1.0] {
+                let t = part * tau;
+                agree("fluence", ordinates.fluence(t).unwrap(), integral.fluence(t).unwrap());
+                for mu in [-0.3, 0.3, 0.9] {
+                    let inside = integral.radiance(t, mu).unwrap();
+                    agree("radiance", ordinates.radiance(t, mu, 0.0).unwrap(), inside);
+                }
+            }
+        }
+    }
+}

@@ -172,7 +172,35 @@ fn what_cannot_be_studied_is_refused_in_one_line() {
     assert!(text.contains("bias is one experiment; allowed: study mine.toml"), "{text}");
 }
 
-/// A scene of Mitsuba, with a mesh beside it, is studied as the scene file that is made of it.
+/// Too few paths scatter three times for an error: the places are told, and nothing is said relative to them; with enough of them it is.
+#[test]
+fn references_without_an_error_are_told() {
+    let asked = |error: &str, most: &str| {
+        let reference = format!("[reference]\nwith = 'paths'\nerror = {error}\nmost = {most}\n");
+        of_a_ball()
+            .replace("[[estimators]]\nk", &format!("{reference}[[estimators]]\nk"))
+            .replace("[measure]", "[measure]\nmin_order = 6")
+    };
+    let (folder, file) = written(&asked("0.3", "1100"));
+    let at = folder.path();
+    let run = || {
+        study(at, &["mine.toml", "--out", "out"]).assert().success();
+        let report = std::fs::read_to_string(at.join("out/report.html")).unwrap();
+        (report, rows(&at.join("out/results.csv")))
+    };
+    let (report, few) = run();
+    assert!(report.contains("the samples of 2 of 2 places have no standard error"), "{report}");
+    assert!(report.contains("or fewer than 1000 paths"));
+    assert!(
+        !few.is_empty() && few.iter().all(|row| row["reference_error"].is_empty() && row["rmse"].is_empty())
+    );
+    std::fs::write(&file, asked("0.3", "1e6")).unwrap();
+    let (report, enough) = run();
+    assert!(!report.contains("have no standard error"));
+    assert!(enough.iter().all(|row| row["place"] == "all" || !row["reference_error"].is_empty()));
+    assert!(enough.iter().any(|row| row["place"] == "all"));
+}
+
 /// What is refused leaves the results that are there.
 #[test]
 fn results_stay_where_a_later_study_is_refused() {
@@ -194,6 +222,7 @@ fn results_stay_where_a_later_study_is_refused() {
     assert!(before == (results(at, "out"), report()));
 }
 
+/// A scene of Mitsuba, with a mesh beside it, is studied as the scene file that is made of it.
 #[test]
 fn a_scene_of_mitsuba_is_that_which_is_made_of_it() {
     let room = "<scene version='3.0.0'><integrator type='volpath'/>

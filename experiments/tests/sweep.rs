@@ -196,12 +196,11 @@ fn scenes_that_are_none_are_refused_by_file_and_line() {
         let run = sweep().arg("--scene").arg(&path).assert().code(2).stdout("");
         String::from_utf8(run.get_output().stderr.clone()).unwrap()
     };
-    let region =
-        "[[regions]]\nshape = { slab = { top = 0, thickness = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n";
-    let beam = "[[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1, section = \"unbounded\" }\n";
-    let said = refused("white.toml", &format!("{}{beam}", region.replace("0.5", "1.7")));
+    let region = "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n";
+    let light = "[[lights]]\npoint = { position = [0, 0, 2], power = 1 }\n";
+    let said = refused("white.toml", &format!("{}{light}", region.replace("0.5", "1.7")));
     assert!(said.contains("white.toml:4:10: albedo is 1.7; allowed: 0 to 1"), "{said}");
-    let said = refused("dark.toml", &format!("{region}{beam}"));
+    let said = refused("dark.toml", &format!("{region}{light}"));
     assert!(said.contains("dark.toml: the scene has no camera; allowed: "), "{said}");
 }
 

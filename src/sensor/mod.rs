@@ -73,7 +73,8 @@ pub struct Measurement {
     pub spread: Spread,
 }
 
-/// What contributions say of the variance of their mean, for whoever puts several measurements together.
+/// What contributions say of the variance of their mean, for whoever puts several measurements together: of one alone
+/// [`Measurement::std_error`] says whether it has an error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
     /// Standard error of the mean, whether or not it can be trusted.

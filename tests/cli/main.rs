@@ -43,6 +43,23 @@ name = "table"
 measure = { radiance = { origin = [0.6, -0.5, 0.5], dir = [-0.58, -0.5, -0.47] } }
 "#;
 
+/// A slab, looked into and with a place inside.
+const RAYS: &str = r#"cell = 4.0
+[[regions]]
+shape = { slab = { top = 0.0, thickness = 2.0 } }
+sigma_t = 1.0
+albedo = 0.9
+g = 0.0
+[[lights]]
+beam = { dir = [0, 0, 1], irradiance = 1.0, section = 'unbounded' }
+[[sensors]]
+name = 'back'
+measure = { radiance = { origin = [0.5, 0.5, -1.0], dir = [0, 0, 1] } }
+[[sensors]]
+name = 'inside'
+measure = { fluence = [0.5, 0.5, 1.0] }
+"#;
+
 /// The command, ready to run.
 fn turbid(arguments: &[&str]) -> Command {
     let mut command = Command::cargo_bin("turbid").unwrap();

@@ -1,6 +1,6 @@
 //! `turbid render --progressive`: stopped and resumed, and what it refuses.
 
-use crate::{Folder, refuses_naming, succeeds, text};
+use crate::{Folder, RAYS, refuses_naming, succeeds, text};
 use std::path::Path;
 
 /// A small picture of the built-in fogbox.
@@ -188,5 +188,7 @@ fn what_has_no_end_or_no_error_is_refused() {
     refuses_naming(&["measure", "slab", "--with", "paths", "--progressive"], &["--progressive"]);
     let measure = ["measure", "slab", "--with", "photons", "--photons", "100", "--progressive"];
     refuses_naming(&[&measure[..], &["--radius", "0.3", "--maps", "1"]].concat(), &["--maps is 1"]);
+    let scene = folder.file("rays.toml", RAYS);
+    let measure = ["measure", text(&scene), "--with", "photons", "--photons", "100", "--progressive"];
     refuses_naming(&[&measure[..], &["--ray-radius", "0.3", "--maps", "4"]].concat(), &["with --radius"]);
 }

@@ -1,6 +1,6 @@
 //! What results say of their run, what is told beside them, and what shells and manuals know of the program.
 
-use crate::{Folder, refuses_naming, succeeds, text, turbid};
+use crate::{Folder, RAYS, refuses_naming, succeeds, text, turbid};
 
 /// The run of a table as JSON.
 fn run_of(arguments: &[&str]) -> serde_json::Value {
@@ -33,7 +33,11 @@ fn tables_say_what_they_were_made_with() {
     });
     let photons = [&measure("photons")[..], &["--photons", "800", "--maps", "2"]].concat();
     assert_eq!(run_of(&photons), of("photons", nearest));
-    let along = [&photons[..], &["--ray-radius", "0.5"]].concat();
+    let folder = Folder::new();
+    let scene = folder.file("rays.toml", RAYS);
+    let rays =
+        ["measure", text(&scene), "--seed", "3", "--with", "photons", "--photons", "800", "--maps", "2"];
+    let along = [&rays[..], &["--ray-radius", "0.5"]].concat();
     assert_eq!(run_of(&along)["ray_radius"], 0.5);
     refuses_naming(
         &[&photons[..], &["--ray-radius", "0"]].concat(),
@@ -51,7 +55,7 @@ fn tables_say_what_they_were_made_with() {
     assert_eq!(run_of(&[&along[..], &["--ray-ends", "own"]].concat())["ray_ends"], "own");
     refuses_naming(&[&photons[..], &["--ray-ends", "own"]].concat(), &["with --ray-radius or --beam-radius"]);
     refuses_naming(&[&along[..], &["--ray-ends", "soft"]].concat(), &["--ray-ends", "cut, own"]);
-    let across = [&photons[..], &["--beam-radius", "0.5"]].concat();
+    let across = [&rays[..], &["--beam-radius", "0.5"]].concat();
     let run = run_of(&across);
     assert_eq!(
         (&run["beam_radius"], &run["beam_blur"], &run["beam_length"]),
@@ -83,6 +87,10 @@ fn tables_say_what_they_were_made_with() {
     for option in [&["--planes"][..], &["--ray-radius", "0.1"], &["--beam-radius", "0.1"]] {
         refuses_naming(&[&slab[..], option].concat(), &[option[0], "allowed: with sensors of radiance"]);
     }
+    assert_eq!(
+        run_of(&[&slab[..], &["--beam-radius", "0.1", "--beam-fluence"]].concat())["beam_fluence"],
+        true
+    );
     refuses_naming(
         &["render", "fogbox", "-o", "never.exr", "--beam-radius", "0.1", "--ray-k", "5"],
         &["--ray-k"],
@@ -106,8 +114,7 @@ fn tables_say_what_they_were_made_with() {
     refuses_naming(&[&across[..], &["--ray-radius", "0.5"]].concat(), &["--beam-radius", "--ray-radius"]);
     assert_eq!(run_of(&[&across[..], &["--planes"]].concat())["planes"], true);
     refuses_naming(&[&along[..], &["--planes"]].concat(), &["--planes", "--ray-radius"]);
-    refuses_naming(&[&photons[..], &["--beam-radius", "1e3"]].concat(), &["beyond the periodic cell"]);
-    let folder = Folder::new();
+    refuses_naming(&[&rays[..], &["--beam-radius", "1e3"]].concat(), &["beyond the periodic cell"]);
     let npy = folder.0.path().join("a.npy");
     succeeds(&["map", "slab", "--photons", "500", "--npy", text(&npy)]);
     let read = [

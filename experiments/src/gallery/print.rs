@@ -18,9 +18,9 @@ use turbid::Spectrum;
 
 /// Columns of pixels.
 const WIDTH: f64 = 960.0;
-/// The part of the page's samples per pixel that each pixel gets: there are up to fourteen times as many pixels, and a day would go by
-/// with all of them.
-const PART: u64 = 4;
+/// One in so many of the page's samples per pixel: there are up to fourteen times as many pixels, and with all samples the nine scenes would
+/// take some 16 hours of CPU time.
+const FEWER: u64 = 4;
 /// Passes of the reference, each of the rival's method and samples, so that its error is half of the rival's; a stopped run loses a part of
 /// one.
 const PASSES: u64 = 4;
@@ -74,7 +74,7 @@ pub fn print(
         let file = folder.join(format!("{}-{kind}.png", picture.name));
         develop(grid, radiance, tone(picture.exposure)).write(&file)
     };
-    let ours = cache.photons("photons", picture.samples.div_ceil(PART), 0)?;
+    let ours = cache.photons("photons", picture.samples.div_ceil(FEWER), 0)?;
     write("photons", &ours.total)?;
     let mut along = Vec::new();
     for of in picture.lines.iter().flat_map(|lines| Stored::ALL.map(|stored| (lines, stored))) {

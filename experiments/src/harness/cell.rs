@@ -77,7 +77,7 @@ pub(crate) struct Header {
 }
 
 /// Raised when files of an older form can no longer be read.
-pub(super) const FORMAT: u32 = 3;
+pub(super) const FORMAT: u32 = 4;
 
 const END: &str = "#end ";
 

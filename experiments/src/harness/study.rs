@@ -129,11 +129,9 @@ impl Asked {
             return on_threads(None, || (self.dry_run)(settings)).map(Findings::Forecast);
         }
         let study = Study { name, experiments: &[self.experiment], closings: &[], program };
-        let outcome = run_watched(&study, settings, watch)?;
-        match outcome.sections.iter().find_map(|section| section.failure.as_ref()) {
-            Some(failure) => bail!("{}: {failure}", path.display()),
-            None => Ok(Findings::Outcome(outcome)),
-        }
+        run_watched(&study, settings, watch)
+            .map(Findings::Outcome)
+            .with_context(|| path.display().to_string())
     }
 }
 
@@ -295,10 +293,7 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
     let start = Instant::now();
     let done = measure(tasks, &manifest, settings, watch)?;
     let wall_seconds = start.elapsed().as_secs_f64();
-    // A question is one experiment: what was concluded before stays, rather than a report that says nothing.
-    if let Some((experiment, failure)) =
-        done.failures.iter().next().filter(|_| settings.part.is_some() || settings.question.is_some())
-    {
+    if let Some((experiment, failure)) = done.failures.iter().next().filter(|_| settings.part.is_some()) {
         bail!("{experiment}: {failure}");
     }
     if settings.part.is_some() {
@@ -326,6 +321,8 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
         };
         let (mut section, failure) = match concluded {
             Ok(section) => (section, None),
+            // A question is one experiment: what was concluded before stays, rather than a report that says nothing.
+            Err(failure) if settings.question.is_some() => bail!("{failure}"),
             Err(failure) => (Section::without_conclusion(&failure), Some(failure)),
         };
         section.rows = section.rows.into_iter().map(|row| row.predicted_from(&predictions)).collect();

@@ -61,7 +61,7 @@ fn summary(study: &OwnStudy, all: &[Data]) -> Vec<String> {
     for data in all.iter().take(figures::MOST_SCENES) {
         if data.usable() == 0 {
             paragraphs.push(format!(
-                "{} the reference of every place is 0, or has an error of more than a fifth of it: nothing is said of relative errors.",
+                "{} the reference of every place is 0, has an error of more than a fifth of it, or has none: nothing is said of relative errors.",
                 here(data)
             ));
             continue;
@@ -119,7 +119,15 @@ fn summary(study: &OwnStudy, all: &[Data]) -> Vec<String> {
                 None => format!("{} no setting was measured.", here(data)),
             },
         };
-        paragraphs.push(text);
+        let main = data.point.places.iter().filter(|place| data.point.is_main(place)).count();
+        let left_out = match main - data.usable() {
+            0 => String::new(),
+            count => format!(
+                " Errors are of {} of the {main} places: of {count} the reference is not known well enough (below).",
+                data.usable()
+            ),
+        };
+        paragraphs.push(text + &left_out);
     }
     if all.len() > figures::MOST_SCENES {
         paragraphs.push(format!(
@@ -329,7 +337,7 @@ fn references(all: &[Data]) -> Option<Table> {
 }
 
 /// The first of some names.
-fn some(names: &[&str]) -> String {
+fn first_names(names: &[&str]) -> String {
     let more = if names.len() > 10 { " and others" } else { "" };
     format!("{}{more}", names.iter().take(10).copied().collect::<Vec<_>>().join(", "))
 }
@@ -359,22 +367,29 @@ fn notes(study: &OwnStudy, all: &[Data]) -> Vec<String> {
                  {}.",
                 unusable.len(),
                 data.known.len(),
-                some(&unusable)
+                first_names(&unusable)
             ));
         }
-        let tailed = data.point.places.iter().zip(&data.known).filter(|(_, known)| known.error.is_nan());
+        let tailed = data.point.places.iter().zip(&data.known).filter(|(_, known)| known.sampled.1.is_nan());
         let tailed: Vec<&str> = tailed.map(|(place, _)| place.name.as_str()).collect();
         if !tailed.is_empty() {
+            let sampler = data.reference.sampler;
+            let few = match sampler {
+                Sampler::Paths => format!(", or fewer than {FEWEST_PATHS} paths"),
+                Sampler::Light => String::new(),
+            };
+            let has_bins = data.point.scene.sensors().iter().all(|sensor| sensor.binned().is_some());
+            let other = match has_bins && sampler == Sampler::Paths {
+                true => "; reference.with = \"light\" asks light tracing",
+                false => "",
+            };
             notes.push(format!(
-                "{scene}: the reference of {} of {} places has no standard error, since rare large contributions carry it, or fewer than \
-                 {FEWEST_PATHS} paths: they are not among the errors: {}. {}.",
+                "{scene}: the samples of {} of {} places have no standard error, since rare large contributions carry them{few}: where the \
+                 reference is no exact value, they are not among the errors: {}. A smaller reference.error or a larger reference.most \
+                 takes more{other}.",
                 tailed.len(),
                 data.known.len(),
-                some(&tailed),
-                match data.reference.sampler {
-                    Sampler::Paths => "Sensors with bins can be told by reference.with = \"light\"; or let reference.most be larger",
-                    Sampler::Light => "Let reference.most be larger",
-                }
+                first_names(&tailed)
             ));
         }
         if data.reference.is_cut && data.known.iter().any(|k| !k.is_exact) {

@@ -10,7 +10,7 @@ use crate::harness::{Cells, Estimate};
 use anyhow::Context;
 use turbid::estimators::Estimator;
 use turbid::sensor::Spread;
-use turbid::stats::{Moments, jackknife};
+use turbid::stats::{Moments, jackknife, poisson_interval};
 
 /// What a place is compared with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -198,8 +198,15 @@ impl<'a> Data<'a> {
         let mut known = Vec::with_capacity(point.places.len());
         for (place, exact) in point.places.iter().zip(&reference.exact) {
             let sampled = cells.moments(&case, &place.name)?;
-            let error =
-                if is_known(cells, (point, place), reference)? { sampled.std_error() } else { f64::NAN };
+            let error = match is_known(cells, (point, place), reference)? {
+                false => f64::NAN,
+                // Histories that are all alike: another one among them would be rarer than 3 of all.
+                true if reference.sampler == Sampler::Light && sampled.variance() == 0.0 => {
+                    let histories = (BATCHES * reference.samples) as f64;
+                    sampled.mean().abs() * poisson_interval(0, 0.95).high / histories
+                }
+                true => sampled.std_error(),
+            };
             let sampled = (sampled.mean(), error);
             let (value, error) = exact.unwrap_or(sampled);
             known.push(Known { value, error, is_exact: exact.is_some(), sampled });
@@ -363,10 +370,13 @@ fn rival(
     usable: &[usize],
 ) -> anyhow::Result<Option<Rival>> {
     let case = words::reference(point);
+    // A rival without an error of its own is none.
+    let usable: Vec<usize> =
+        usable.iter().copied().filter(|&place| !known[place].sampled.1.is_nan()).collect();
     let values = usable.iter().map(|&place| cells.values(&case, &point.places[place].name));
     let values = values.collect::<anyhow::Result<Vec<_>>>()?;
     let batches: Vec<Vec<f64>> = (0..BATCHES as usize)
-        .map(|batch| values.iter().zip(usable).map(|(v, &place)| v[batch] / known[place].value).collect())
+        .map(|batch| values.iter().zip(&usable).map(|(v, &place)| v[batch] / known[place].value).collect())
         .collect();
     let seconds: Moments = cells.seconds(&reference_group(number), words::SAMPLING).iter().collect();
     if usable.is_empty() || seconds.n() == 0 {

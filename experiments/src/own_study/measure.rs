@@ -75,14 +75,15 @@ fn map_settings(
 /// Photons of the maps that say whether they can be read.
 const FEW: u64 = 256;
 
-/// Refuses what maps of few photons refuse already, before anything is measured: a radius below what positions tell apart.
+/// Refuses what maps of few photons refuse already, before anything is measured: a radius below what the positions of these tell apart.
 /// Pictures are not tried.
 ///
 /// # Errors
 /// Those of the maps, with the estimator's name
 pub fn try_estimators(study: &OwnStudy, settings: &Settings) -> anyhow::Result<()> {
     for point in study.points.iter().filter(|point| point.picture.is_none()) {
-        let of = map_settings(study, point, FEW, settings, &CellId::of("trial", 0));
+        let of =
+            MapSettings { readings: 1, ..map_settings(study, point, FEW, settings, &CellId::of("trial", 0)) };
         let maps = SensorMaps::fill(&point.scene, of, &NoProgress)?;
         for estimator in &point.estimators {
             maps.read(estimator).with_context(|| format!("the estimator \"{}\"", estimator.name()))?;
@@ -169,7 +170,8 @@ fn sampled(
         push(&case, batch.mean);
         let Some(spread) = batch.spread else { continue };
         push(&errors, spread.std_error);
-        push(&vovs, spread.vov);
+        // Of what is too small for its fourth power nothing is known.
+        push(&vovs, if spread.vov.is_finite() { spread.vov } else { 1.0 });
         push(&heavy, f64::from(u8::from(spread.is_heavy)));
         if let Some(paths) = spread.contributing {
             push(&contributing, paths as f64);

@@ -67,21 +67,32 @@ pub struct Batch {
     pub spread: Option<Spread>,
 }
 
-/// Part of the batches that may have heavy tails: of bounded values far fewer have.
+/// Batches of heavy tails from which on all together have one. A batch of bounded values seldom looks so ([`turbid::stats::Tail::is_heavy`]: none of
+/// 46 such sums), one of values without a variance most often.
 const HEAVY: usize = BATCHES as usize / 4;
+/// Contributing paths of a batch from which on its tail can be told.
+const TELLING: f64 = 100.0;
 
-/// Whether batches of so many samples each have a standard error together, as a measurement of all their samples would.
-pub fn is_known(batches: &[Spread], samples: u64) -> bool {
+/// Variance of variance of all samples of batches of so many, but for how far the means of the batches lie apart. sum d^4 of a batch is (vov +
+/// 1/n) (sum d^2)^2, and sum d^2 is n (n-1) times the square of the standard error.
+fn merged_vov(batches: &[Spread], samples: u64) -> f64 {
     let n = samples as f64;
+    // Relative to the largest, whose fourth power may be no number.
+    let largest = batches.iter().map(|spread| spread.std_error).fold(0.0, f64::max);
     let (mut fourth, mut second) = (0.0, 0.0);
-    for spread in batches {
-        let squares = spread.std_error * spread.std_error * n * (n - 1.0);
+    for spread in batches.iter().filter(|spread| spread.std_error > 0.0) {
+        let squares = (spread.std_error / largest).powi(2) * n * (n - 1.0);
         fourth += (spread.vov + 1.0 / n) * squares * squares;
         second += squares;
     }
-    let vov = if second > 0.0 { fourth / (second * second) - 1.0 / (n * batches.len() as f64) } else { 0.0 };
+    if second > 0.0 { fourth / (second * second) - 1.0 / (n * batches.len() as f64) } else { 0.0 }
+}
+
+/// Whether batches of so many samples each have a standard error together: as a measurement of all of them would be asked, but that tails are
+/// told batch by batch.
+pub fn is_known(batches: &[Spread], samples: u64) -> bool {
     let contributing: Option<u64> = batches.iter().map(|spread| spread.contributing).sum();
-    vov <= HEAVY_TAIL
+    merged_vov(batches, samples) <= HEAVY_TAIL
         && contributing.is_none_or(|paths| paths >= FEWEST_PATHS)
         && batches.iter().filter(|spread| spread.is_heavy).count() < HEAVY
 }
@@ -123,6 +134,13 @@ fn relative_error(point: &Point, measured: &[Batch]) -> Option<f64> {
         count += 1.0;
     }
     f64::is_finite(sum).then(|| (sum / count).sqrt())
+}
+
+/// The least part of the paths that bring something to a place of the first group; 1 of what tells nothing of it.
+fn share(point: &Point, measured: &[Batch], samples: u64) -> f64 {
+    let main = measured.iter().zip(&point.places).filter(|(_, place)| point.is_main(place));
+    let paths = main.filter_map(|(batch, _)| batch.spread.and_then(|spread| spread.contributing));
+    paths.map(|paths| paths as f64 / samples as f64).fold(1.0, f64::min)
 }
 
 impl Reference {
@@ -169,9 +187,10 @@ impl Reference {
             let id = CellId::of(&format!("pilot-{number:03}-{}", sampler.name()), 0);
             let of = (settings.seed, id.stream(words::NAME));
             let measured = batch(point, sampler, samples, of).context("reference")?;
-            // Samples that bring the error.
+            // Samples that bring the error, and paths enough to trust it.
+            let telling = BATCHES as f64 * TELLING / share(point, &measured, samples);
             Ok(relative_error(point, &measured)
-                .map(|error| samples as f64 * (error / wanted) * (error / wanted)))
+                .map(|error| (samples as f64 * (error / wanted) * (error / wanted)).max(telling)))
         };
         let by_paths = match by {
             ReferenceBy::Light => None,
@@ -242,25 +261,31 @@ mod tests {
         assert_eq!(known(&|u| f64::from(u8::from(u < 0.01))), 0);
     }
 
-    /// The variance of variance of all samples is put together from those of the batches: 16 numbers equal to n, all others 0, have 1/16; in
-    /// one batch 1/4, of all, where the others have nothing.
+    /// The variance of variance of all samples is put together from those of the batches, as exactly as their means agree: each is off by a
+    /// standard error of its own, which is 1/sqrt(n) of the spread.
     #[test]
     fn variances_of_variances_are_put_together() {
-        let of = |largest: &[usize]| {
-            let one = |count: &usize| {
-                let values = (0..SAMPLES as usize).map(|i| if i < *count { 1.0 } else { 0.0 });
-                let moments: Moments = values.collect::<Vec<f64>>().iter().collect();
-                Spread {
-                    std_error: moments.std_error(),
-                    vov: moments.vov(),
-                    contributing: None,
-                    is_heavy: false,
-                }
+        let numbers: [fn(f64) -> f64; 3] =
+            [|u| u, |u| -turbid::math::ln(1.0 - u), |u| 1e-150 * libm::pow(1.0 - u, -0.3)];
+        for number in numbers {
+            let mut all = Moments::new();
+            let mut one = |batch: u64| {
+                let mut stream = Stream::new(32, Purpose::Synthetic, 0, batch);
+                let values: Vec<f64> = (0..SAMPLES).map(|_| number(stream.unit())).collect();
+                let moments: Moments = values.iter().collect();
+                // In a unit in which fourth powers are numbers.
+                let unit = moments.mean();
+                values.iter().for_each(|x| all.push(x / unit));
+                let scaled: Moments = values.iter().map(|x| x / unit).collect::<Vec<f64>>().iter().collect();
+                Spread { std_error: moments.std_error(), vov: scaled.vov(), ..Spread::default() }
             };
-            is_known(&largest.iter().map(one).collect::<Vec<_>>(), SAMPLES)
-        };
-        assert!(of(&[1; 16]));
-        assert!(!of(&[4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]));
-        assert!(!of(&[1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0]));
+            let batches: Vec<Spread> = (0..BATCHES).map(&mut one).collect();
+            let put_together = merged_vov(&batches, SAMPLES);
+            assert!((put_together / all.vov() - 1.0).abs() < 0.03, "{put_together} {}", all.vov());
+        }
+        // One batch that has it all.
+        let alone = |vov| Spread { std_error: 1.0, vov, ..Spread::default() };
+        let with_all: Vec<Spread> = std::iter::once(alone(0.25)).chain(vec![Spread::default(); 15]).collect();
+        assert!(!is_known(&with_all, SAMPLES) && is_known(&[alone(0.25); 16], SAMPLES));
     }
 }

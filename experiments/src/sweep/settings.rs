@@ -17,7 +17,7 @@ pub struct Settings {
     /// One scene, with all that was compared; with --scene the seed of the random numbers
     #[arg(long)]
     pub seed: Option<u64>,
-    /// A scene file of your own in place of a drawn one
+    /// A scene of your own with a camera, a scene file or one of Mitsuba (.xml), in place of a drawn one
     #[arg(long, value_name = "FILE")]
     pub scene: Option<PathBuf>,
     /// Work of each method where a scene needs all of it, over that of some seven seconds

@@ -1,5 +1,6 @@
 //! A scene as text, with the files that it names.
 
+use crate::harness::say;
 use anyhow::{Context, ensure};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,13 +23,14 @@ pub struct SceneText {
 }
 
 impl SceneText {
-    /// A scene that a file describes, and the files beside it that it names.
+    /// A scene of one's own ([`open`]), and the files beside it that it names.
     ///
     /// # Errors
-    /// what is no scene, or has no camera, with file and line
+    /// what is no scene, or has no camera, with file and line; files that cannot be read
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let source = SceneSource::new(path);
         let opened = open(&source, false)?;
+        opened.notes.iter().for_each(|note| say(&format!("{}: {note}", source.name())));
         let scene = opened.scene().map_err(|error| error.within(&source.name()))?;
         ensure!(
             scene.camera().is_some(),

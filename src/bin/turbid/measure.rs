@@ -437,7 +437,7 @@ impl Measure {
             ] {
                 if is_given {
                     bail!(
-                        "{option} reads light along rays, and no sensor has any; allowed: with sensors of radiance{more}"
+                        "{option} is of radiances, and no sensor measures one; allowed: with sensors of radiance{more}"
                     );
                 }
             }

@@ -74,10 +74,7 @@ fn lists_begin_with_negative_numbers_too() {
     for list in ["-1,-0.2,0.5", "-1,-.2,.5", "-1,-0.2 0.5", "-1 -0.2,0.5"] {
         assert_eq!(asked(&format!("{slab}{list}")), blanks, "{list}");
     }
-    refused(
-        exact().args("slab --tau 1 --albedo 0.5 --mu -1,x".split(' ')).assert(),
-        &["invalid value 'x'", "--mu"],
-    );
+    refused(exact().args("slab --tau 1 --albedo 0.5 --mu -1,x".split(' ')).assert(), &["-1"]);
 }
 
 #[test]
