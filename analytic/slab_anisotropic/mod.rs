@@ -239,9 +239,7 @@ impl AnisotropicSlab {
         let (value, error) = match self.incidence {
             Incidence::Beam { mu0 } => {
                 let orders = self.orders.get_or_init(|| Orders::new(self.medium.azimuth()));
-                let (value, error) = orders.beam(&self.medium, self.tau, Query { t, mu, dphi, mu0 })?;
-                // The source of light scattered twice and more is a fluence.
-                (value, error + self.horizon() * value.abs())
+                orders.beam(&self.medium, self.tau, Query { t, mu, dphi, mu0 })?
             }
             Incidence::Diffuse => {
                 let [fine, coarse] = self.solutions.each_ref().map(|solution| {
@@ -253,16 +251,17 @@ impl AnisotropicSlab {
                         solution.last_scattered(t, mu, &source)
                     }
                 });
-                let difference = 2.0 * (fine.value - coarse.value).abs() + self.horizon() * fine.value.abs();
+                let difference =
+                    2.0 * (fine.value - coarse.value).abs() + self.open_fluence() * fine.value.abs();
                 (fine.value, difference + rounding(fine, self.solutions[0].modes.nodes.len()))
             }
         };
         Ok(Value::new(value, error + f64::MIN_POSITIVE, METHOD))
     }
 
-    /// What the nodes leave open of light that goes lower than the slab is thick.
-    fn horizon(&self) -> f64 {
-        self.solutions[0].modes.nodes.horizon(self.tau)
+    /// What the nodes leave open of the fluence, relative to it.
+    fn open_fluence(&self) -> f64 {
+        self.solutions[0].modes.nodes.open_fluence(self.tau)
     }
 
     /// Net flux downwards at depth t, direct light included, per unit irradiance on the lit face \[1\].
@@ -303,9 +302,8 @@ impl AnisotropicSlab {
         let at = ladder.partition_point(|&(depth, _)| depth < t);
         let near = &ladder[at.saturating_sub(2)..(at + 2).min(ladder.len())];
         let shared = near.iter().fold(0.0, |a: f64, &(_, d)| a.max(d)) * fine.value.abs();
-        // In thin slabs both solutions miss the same of what goes lower than the thickness: a part of all light that is scattered,
-        // which in the fluence of scattered light is no small part.
-        let difference = (fine.value - coarse.value).abs() + self.horizon() * fine.value.abs();
+        // In thin slabs both solutions may miss the same of what goes lower than the thickness.
+        let difference = (fine.value - coarse.value).abs() + self.open_fluence() * fine.value.abs();
         let error = difference + shared + rounding(fine, self.solutions[0].modes.nodes.len());
         Ok(Value::new(fine.value, error + f64::MIN_POSITIVE, METHOD))
     }

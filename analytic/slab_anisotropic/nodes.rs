@@ -80,12 +80,27 @@ impl Nodes {
     /// What the spacing of the nodes leaves open of the light of a slab of thickness `tau`, relative to what is
     /// scattered: a fraction min(tau, b) of it goes lower than tau, and exp(-pi^2/h) of that is not resolved.
     pub fn horizon(&self, tau: f64) -> f64 {
-        let Some((b, lower)) = self.crowd else { return 0.0 };
+        let Some((b, _)) = self.crowd else { return 0.0 };
         let least = tau.min(0.5 * b);
-        let x = (least / b).sqrt().sqrt();
+        least * self.unresolved(least)
+    }
+
+    /// What the spacing leaves open of the fluence of light that is scattered once in a slab of thickness `tau`, relative to the fluence that it is
+    /// scattered from: int (1 - e^(-t/mu)) dmu is settled by a tenth of t only, where nodes lie farther apart. Of the sets in use the error of the
+    /// rule is up to 2.9 times the product below, for t from 1e-12 to 1e-2.
+    pub fn open_fluence(&self, tau: f64) -> f64 {
+        let Some((b, _)) = self.crowd else { return 0.0 };
+        let least = tau.min(0.5 * b);
+        4.0 * least * self.unresolved(0.1 * least)
+    }
+
+    /// exp(-pi^2/h) by the spacing of the nodes about a cosine below b.
+    fn unresolved(&self, mu: f64) -> f64 {
+        let Some((b, lower)) = self.crowd else { return 0.0 };
+        let x = (mu / b).sqrt().sqrt();
         // Gauss nodes in x lie pi root(x (1-x))/n apart.
         let h = f64::from(POWER) * PI * (x * (1.0 - x)).sqrt() / (lower * x);
-        least * exp(-PI * PI / h)
+        exp(-PI * PI / h)
     }
 
     /// How many.
@@ -168,6 +183,17 @@ mod tests {
             let sum = nodes.sum(|mu| -libm::expm1(-t / mu));
             let exact = 1.0 - crate::exponential_integral::e_n(2, t);
             assert!((sum - exact).abs() < 1e-9, "{t:e} {:e}", sum - exact);
+        }
+        // The sets in use, each within what it says of itself; beside it the last digit of 1 - E_2.
+        for (upper, lower) in [(32, 60), (26, 50), (32, 40), (26, 34), (100, 60)] {
+            let nodes = Nodes::new(upper, lower);
+            for i in 0..60 {
+                let t = libm::pow(10.0, -12.0 + f64::from(i) / 6.0);
+                let sum = nodes.sum(|mu| -libm::expm1(-t / mu));
+                let off = (sum - (1.0 - crate::exponential_integral::e_n(2, t))).abs();
+                let most = nodes.open_fluence(t) + 4.0 * f64::EPSILON;
+                assert!(off <= most, "{upper} {lower}, {t:e}: {off:e} above {most:e}");
+            }
         }
     }
 }

@@ -124,6 +124,8 @@ impl Orders {
         let last = if turning { azimuth.degree(0) } else { 0 };
         // What a cut leaves open swings with the last moment: a quarter of a turn farther on it is not zero too.
         let modes = azimuth.modes(0, 0)?;
+        // The source of light scattered twice and more is a fluence.
+        let open = modes.nodes.open_fluence(tau);
         let (cut, modes) = (modes.scattering.peak > 0.0, modes.nodes.len());
         let beside = Query { dphi: q.dphi + 0.5 * PI / (azimuth.degree(0) + 1) as f64, ..q };
         let places = if cut && turning { vec![q, beside] } else { vec![q] };
@@ -160,7 +162,7 @@ impl Orders {
             // The two sets cut off different peaks: their terms differ, and only sums can be compared.
             difference = totals.iter().fold(0.0, |a: f64, [fine, coarse]| a.max((fine - coarse).abs()));
         }
-        Ok((sum.value, 2.0 * difference + TAIL * tail + rounding(sum, modes)))
+        Ok((sum.value, 2.0 * difference + TAIL * tail + open * sum.value.abs() + rounding(sum, modes)))
     }
 
     /// The term of the series for one order of azimuth, on one set of nodes.

@@ -179,7 +179,7 @@ fn references_without_an_error_are_told() {
         let reference = format!("[reference]\nwith = 'paths'\nerror = {error}\nmost = {most}\n");
         of_a_ball()
             .replace("[[estimators]]\nk", &format!("{reference}[[estimators]]\nk"))
-            .replace("[measure]", "[measure]\nmin_order = 6")
+            .replace("[measure]", "[measure]\nmin_order = 3")
     };
     let (folder, file) = written(&asked("0.3", "1100"));
     let at = folder.path();

@@ -57,7 +57,7 @@ name = 'back'
 measure = { radiance = { origin = [0.5, 0.5, -1.0], dir = [0, 0, 1] } }
 [[sensors]]
 name = 'inside'
-measure = { fluence = [0.5, 0.5, 1.0] }
+measure = { fluence = [[0.5, 0.5, 1.0]] }
 "#;
 
 /// The command, ready to run.

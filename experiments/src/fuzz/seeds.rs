@@ -265,7 +265,7 @@ fn png(which: usize) -> Vec<u8> {
 }
 
 fn cell() -> Vec<u8> {
-    let head = "#{\"format\":3,\"experiment\":\"bias\",\"id\":\"slab-000001\",\"settings\":\"quick\",\"program\":\"00\",\
+    let head = "#{\"format\":4,\"experiment\":\"bias\",\"id\":\"slab-000001\",\"settings\":\"quick\",\"program\":\"00\",\
                 \"cpu_seconds\":0.1,\"phases\":{\"shooting\":0.05},\"non_finite\":0,\"counters\":{\"photons\":10}}\n";
     let mut bytes =
         format!("{head}case,quantity,value\nr = 1,bias,0.5\n\"a, b\",variance,1e-12\n").into_bytes();
