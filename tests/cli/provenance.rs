@@ -63,7 +63,7 @@ fn tables_say_what_they_were_made_with() {
     );
     assert!(run["beam_fluence"].is_null());
     let places = ["--beam-fluence", "--beam-blur", "3d", "--beam-length", "whole"];
-    let run = run_of(&[&across[..], &places].concat());
+    let run = run_of(&[&photons[..], &["--beam-radius", "0.5"], &places].concat());
     assert_eq!(
         (&run["beam_fluence"], &run["beam_blur"], &run["beam_length"]),
         (&true.into(), &"3d".into(), &"whole".into())
