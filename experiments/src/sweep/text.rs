@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
 use turbid::exchange::open;
-use turbid::input::read;
+use turbid::input::{read, read_text};
 use turbid::output::write_atomically;
 use turbid::scene::{Scene, SceneFile, SceneSource};
 
@@ -28,6 +28,8 @@ impl SceneText {
     /// # Errors
     /// what is no scene, or has no camera, with file and line; files that cannot be read
     pub fn read(path: &Path) -> anyhow::Result<Self> {
+        // A device would be read up to its end.
+        read_text(path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
         let source = SceneSource::new(path);
         let opened = open(&source, false)?;
         opened.notes.iter().for_each(|note| say(&format!("{}: {note}", source.name())));
