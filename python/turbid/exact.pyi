@@ -80,7 +80,8 @@ def slab(
     albedo : number, word or array
         Single-scattering albedo, 0 to 1.
     g : number, word or array
-        Henyey-Greenstein scattering of this mean cosine, -0.95 to 0.99.
+        Henyey-Greenstein scattering of this mean cosine: checked from -0.95 to 0.99, and answered beyond as far as its
+        moments allow.
     g2 : number, word or array
         With `g` and `share`: the mean cosine of a second Henyey-Greenstein term.
     share : number, word or array
@@ -100,8 +101,8 @@ def slab(
         Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     index : number, word or array
         Refractive index inside over outside, 0.25 to 4: faces that reflect and refract (fluxes and fluence). Gives also
-        the light that the first face sends back (`specular`), reflectances without it (`reflectance_diffuse`), and the
-        part of Lambertian light that one face reflects, from outside and from inside.
+        the light that the first face sends back (`specular`), what leaves that was scattered (`reflectance_diffuse`),
+        and the part of Lambertian light that one face reflects, from outside and from inside.
     depth : number or array
         Depths in mean free paths, 0 to tau, at which to give the fluence and the net flux downwards (direct light
         included).
@@ -204,7 +205,8 @@ def half_space(
     albedo : number, word or array
         Single-scattering albedo, 0 to 1.
     g : number, word or array
-        Henyey-Greenstein scattering of this mean cosine, -0.95 to 0.99.
+        Henyey-Greenstein scattering of this mean cosine: checked from -0.95 to 0.99, and answered beyond as far as its
+        moments allow.
     g2 : number, word or array
         With `g` and `share`: the mean cosine of a second Henyey-Greenstein term.
     share : number, word or array
@@ -263,9 +265,11 @@ def thick(
     Parameters
     ----------
     albedo : number, word or array
-        Single-scattering albedo, 0.1 to 1.
+        Single-scattering albedo, 0.1 to 1, where the slowest decay is below 0.999: from 0.263 on if scattering is
+        isotropic.
     g : number, word or array
-        Henyey-Greenstein scattering of this mean cosine, -0.95 to 0.99.
+        Henyey-Greenstein scattering of this mean cosine: checked from -0.95 to 0.99, and answered beyond as far as its
+        moments allow.
     g2 : number, word or array
         With `g` and `share`: the mean cosine of a second Henyey-Greenstein term.
     share : number, word or array
@@ -610,7 +614,8 @@ def infinite(
     albedo : number, word or array
         Single-scattering albedo, 0 to 1.
     g : number, word or array
-        Henyey-Greenstein scattering of this mean cosine, -0.95 to 0.99.
+        Henyey-Greenstein scattering of this mean cosine: checked from -0.95 to 0.99, and answered beyond as far as its
+        moments allow.
     g2 : number, word or array
         With `g` and `share`: the mean cosine of a second Henyey-Greenstein term.
     share : number, word or array
