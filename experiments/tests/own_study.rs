@@ -220,6 +220,23 @@ fn results_stay_where_a_later_study_is_refused() {
         );
     }
     assert!(before == (results(at, "out"), report()));
+    // Pictures are refused while they are measured.
+    let picture = |radius: &str| {
+        let read = format!(
+            "[measure]\npicture = {{ width = 12, height = 12, samples = 1, blocks = [2, 2] }}\n[[estimators]]\nradius = {radius}\n"
+        );
+        std::fs::write(&file, format!("scene = 'fogbox'\nphotons = [1e3]\nmaps = 4\n{read}")).unwrap();
+    };
+    picture("0.3");
+    study(at, &["mine.toml", "--out", "picture"]).assert().success();
+    let before = results(at, "picture");
+    picture("1e-9");
+    let said = refused(at, &["mine.toml", "--out", "picture"]);
+    assert!(
+        said.contains("mine.toml: cell scene000") && said.contains("a gather radius of 1e-9 L"),
+        "{said}"
+    );
+    assert!(before == results(at, "picture"));
 }
 
 /// A scene of Mitsuba, with a mesh beside it, is studied as the scene file that is made of it.
