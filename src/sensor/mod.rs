@@ -87,6 +87,17 @@ pub struct Spread {
     pub is_heavy: bool,
 }
 
+impl Spread {
+    fn of(m: &Moments, tail: Option<&Tail>) -> Self {
+        Spread {
+            std_error: m.std_error(),
+            vov: m.vov(),
+            contributing: tail.map(Tail::contributing),
+            is_heavy: tail.is_some_and(|tail| tail.is_heavy(m)),
+        }
+    }
+}
+
 /// Which of a sensor's bins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bin {
@@ -201,7 +212,7 @@ fn effective_number(m: &Moments) -> f64 {
 }
 
 /// The standard error of a mean, or why it has none; paths tell their tail.
-fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, NoError> {
+fn std_error(m: &Moments, spread: &Spread, source: Source) -> Result<f64, NoError> {
     let brought_nothing = m.mean() == 0.0 && (m.n() < 2 || m.variance() == 0.0);
     match source {
         Source::Tally if m.n() < 2 => Err(NoError::TooFew),
@@ -224,8 +235,10 @@ fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, No
         Source::Maps if m.n() < 2 => Err(NoError::OneMap),
         // Between that of one map, 1, and that of two, 2.
         Source::Maps if effective_number(m) < 1.5 => Err(NoError::TooFew),
-        Source::Paths if tail.is_some_and(|tail| tail.contributing() < FEWEST_PATHS) => Err(NoError::TooFew),
-        _ if is_heavy_tailed(m) || tail.is_some_and(|tail| tail.is_heavy(m)) => Err(NoError::HeavyTail),
+        Source::Paths if spread.contributing.is_some_and(|paths| paths < FEWEST_PATHS) => {
+            Err(NoError::TooFew)
+        }
+        _ if is_heavy_tailed(m) || spread.is_heavy => Err(NoError::HeavyTail),
         _ => Ok(m.std_error()),
     }
 }
@@ -252,8 +265,8 @@ fn measurements(
         .enumerate()
         .map(|(channel, suffix)| {
             let m = &moments[channel];
-            let tail = tails.map(|tails| &tails[channel]);
-            let error = std_error(m, tail, source);
+            let spread = Spread::of(m, tails.map(|tails| &tails[channel]));
+            let error = std_error(m, &spread, source);
             let error = error.map(|error| libm::hypot(error, of_power[channel] * m.mean()));
             Measurement {
                 sensor: sensor.name.clone(),
@@ -264,12 +277,7 @@ fn measurements(
                 n: m.n(),
                 no_error: error.err(),
                 bin,
-                spread: Spread {
-                    std_error: m.std_error(),
-                    vov: m.vov(),
-                    contributing: tail.map(Tail::contributing),
-                    is_heavy: tail.is_some_and(|tail| tail.is_heavy(m)),
-                },
+                spread,
             }
         })
         .collect()
@@ -283,7 +291,8 @@ mod tests {
         let mut tail = Tail::default();
         values.iter().for_each(|x| tail.push(*x));
         let tail = (source == Source::Paths).then_some(&tail);
-        std_error(&values.iter().collect(), tail, source)
+        let moments = values.iter().collect();
+        std_error(&moments, &Spread::of(&moments, tail), source)
     }
 
     #[test]

@@ -19,7 +19,7 @@ use turbid::Spectrum;
 /// Columns of pixels.
 const WIDTH: f64 = 960.0;
 /// One in so many of the page's samples per pixel: there are up to fourteen times as many pixels, and with all samples the nine scenes would
-/// take some 16 hours of CPU time.
+/// take some 16 hours of CPU time: six times the page's seconds by the ratio of pixels.
 const FEWER: u64 = 4;
 /// Passes of the reference, each of the rival's method and samples, so that its error is half of the rival's; a stopped run loses a part of
 /// one.

@@ -293,10 +293,10 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
     let start = Instant::now();
     let done = measure(tasks, &manifest, settings, watch)?;
     let wall_seconds = start.elapsed().as_secs_f64();
-    if let Some((experiment, failure)) = done.failures.iter().next().filter(|_| settings.part.is_some()) {
-        bail!("{experiment}: {failure}");
-    }
     if settings.part.is_some() {
+        if let Some((experiment, failure)) = done.failures.iter().next() {
+            bail!("{experiment}: {failure}");
+        }
         return Ok(Outcome { report: settings.out.clone(), sections: Vec::new(), measured: done.measured });
     }
 

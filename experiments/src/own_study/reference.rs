@@ -70,7 +70,7 @@ pub struct Batch {
 /// Batches of heavy tails from which on all together have one. A batch of bounded values seldom looks so ([`turbid::stats::Tail::is_heavy`]: none of
 /// 46 such sums), one of values without a variance most often.
 const HEAVY: usize = BATCHES as usize / 4;
-/// Contributing paths of a batch from which on its tail can be told.
+/// Contributing paths of a batch from which on its tail can be told: a fifth of them at most, of which 20 are needed.
 const TELLING: f64 = 100.0;
 
 /// Variance of variance of all samples of batches of so many, but for how far the means of the batches lie apart. sum d^4 of a batch is (vov +
@@ -287,5 +287,12 @@ mod tests {
         let alone = |vov| Spread { std_error: 1.0, vov, ..Spread::default() };
         let with_all: Vec<Spread> = std::iter::once(alone(0.25)).chain(vec![Spread::default(); 15]).collect();
         assert!(!is_known(&with_all, SAMPLES) && is_known(&[alone(0.25); 16], SAMPLES));
+        // A few batches may look heavy, and no more.
+        let heavy = |count: usize| {
+            let batches: Vec<Spread> =
+                (0..16).map(|i| Spread { is_heavy: i < count, ..alone(0.01) }).collect();
+            is_known(&batches, SAMPLES)
+        };
+        assert!(heavy(0) && heavy(HEAVY - 1) && !heavy(HEAVY));
     }
 }
