@@ -90,6 +90,21 @@ fn isotropic_scattering_agrees_with_the_peierls_equation() {
     }
 }
 
+/// Light along the faces of thin slabs lies between the nodes: how much of it they find swings with ln(tau), and bounds cover that.
+#[test]
+fn fluences_of_thin_slabs_keep_their_bounds() {
+    for n in 0..40 {
+        let tau = 9e-11 * libm::pow(10.0, 0.25 * f64::from(n));
+        let slab = IsotropicSlab::new(tau, 1.0, NORMAL).unwrap();
+        let doubled = AddingDoubling::new(tau, 1.0, 0.0, NORMAL).unwrap();
+        for share in [0.0, 1e-4, 0.3, 0.999, 1.0] {
+            let [a, b] = [slab.fluence(share * tau).unwrap(), doubled.fluence(share * tau).unwrap()];
+            let off = (a.value - b.value).abs();
+            assert!(off <= a.error + b.error, "tau {tau}, {share} of it: {a:?}, {b:?}");
+        }
+    }
+}
+
 #[test]
 fn radiances_agree_at_any_azimuth() {
     let oblique = Incidence::Beam { mu0: 0.6 };
