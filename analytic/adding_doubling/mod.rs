@@ -207,7 +207,9 @@ impl AddingDoubling {
         // near one face it says nothing of the light from afar, which the middle depths do.
         let at = ladder.partition_point(|&(depth, _)| depth < t);
         let middle = ladder.len() / 2;
-        let near = ladder[at.saturating_sub(2)..(at + 2).min(ladder.len())].iter().chain(&ladder[middle - 1..=middle + 1]);
+        let near = ladder[at.saturating_sub(2)..(at + 2).min(ladder.len())]
+            .iter()
+            .chain(&ladder[middle - 1..=middle + 1]);
         let shared = near.fold(0.0, |a: f64, &(_, d)| a.max(d)) + self.rounding;
         let error = (fine - coarse).abs() + shared * fine.abs();
         Ok(Value::new(fine, error + f64::MIN_POSITIVE, METHOD))

@@ -54,13 +54,19 @@ impl Face {
 
     /// Reflectance and transmittance for light of the given cosines inside and outside, from either side.
     ///
-    /// r_s = (n mu - mu_o)/(n mu + mu_o), r_p = (mu - n mu_o)/(mu + n mu_o), with the differences multiplied out.
+    /// r_s = (n mu - mu_o)/(n mu + mu_o), r_p = (mu - n mu_o)/(mu + n mu_o), with the differences multiplied out by the cosine on the
+    /// side of the smaller index: by the other one they cancel where light grazes.
     pub fn reflected(self, inside: f64, outside: f64) -> (f64, f64) {
         let (n, square) = (self.index, self.index * self.index);
         let s = n * inside + outside;
         let p = inside + n * outside;
         let rs = self.excess / (s * s);
-        let rp = self.excess * (square - (1.0 + square) * inside * inside) / (p * p);
+        let difference = if self.excess > 0.0 {
+            (1.0 - (1.0 + square) * outside * outside) / square
+        } else {
+            square - (1.0 + square) * inside * inside
+        };
+        let rp = self.excess * difference / (p * p);
         let through = 2.0 * n * inside * outside * (1.0 / (s * s) + 1.0 / (p * p));
         (0.5 * (rs * rs + rp * rp), through)
     }
@@ -201,13 +207,14 @@ mod tests {
 
     #[test]
     fn fresnel_conserves_light() {
-        for n in [0.3, 0.99, 1.0, 1.0 + 1e-9, 1.33, 2.4] {
+        for n in [0.25, 0.3, 0.99, 1.0, 1.0 + 1e-9, 1.33, 2.4, 4.0] {
             let face = Face::new(n);
-            for i in 1..=50 {
-                let mu0 = f64::from(i) / 50.0;
-                let Some(inside) = face.inside(mu0) else { continue };
-                let (r, t) = face.reflected(inside, mu0);
-                assert!((r + t - 1.0).abs() < 1e-14, "{n} {mu0}");
+            for i in 0..=200 {
+                let cosine = libm::pow(10.0, -0.025 * f64::from(i));
+                let entering = face.inside(cosine).map(|inside| face.reflected(inside, cosine));
+                for (r, t) in entering.into_iter().chain([face.reflected_inside(cosine)]) {
+                    assert!((r + t - 1.0).abs() < 2e-15, "{n} {cosine}: {r} and {t}");
+                }
             }
         }
         // Normal incidence: ((n-1)/(n+1))^2.

@@ -10,7 +10,10 @@
 //!
 //! A pilot sees the bend of the field through its own noise. What it cannot see is taken to be as in the uncollided
 //! beam e^-t, whose bend is a = 1/6 of the fluence per squared mean free path: the bend of each probe has the normal
-//! prior distribution of that standard deviation, and the prediction carries what remains uncertain.
+//! prior distribution of that standard deviation, and the prediction carries what remains uncertain. Where the pilot hardly sees the bend
+//! and the field bends less than the beam, the prediction is too large, and the interval reaches down to the noise alone.
+//!
+//! All of this is by channel, of those that a probe has light in: errors are means over probes and channels.
 
 use super::order_maps::{FluenceMaps, RadianceMaps, maps, max_order};
 use super::paths::{self, PathSettings};
@@ -79,9 +82,11 @@ pub struct Pilot {
     pub on_boundary: Vec<String>,
 }
 
+/// A channel at a fluence probe.
 #[derive(Debug, Clone, PartialEq)]
 struct Probe {
     name: String,
+    channel: usize,
     /// Radius of the largest ball \[L\].
     reach: f64,
     /// The same in mean free paths.
@@ -103,7 +108,7 @@ pub struct Advice {
     pub photons: u64,
     /// Photons that a ball of this radius then holds on average: least, median and largest over the probes.
     pub gathered: [f64; 3],
-    /// Predicted root mean square relative error over the probes \[1\].
+    /// Predicted root mean square relative error over the probes and their channels \[1\].
     pub error: f64,
     /// Its 95 per cent interval.
     pub interval: Interval,
@@ -141,14 +146,22 @@ impl Pilot {
             pilot.read_map(scene, &chosen, margin, settings, replicate, progress)?;
         }
         let dark = pilot.probes.iter().find(|p| p.found * (settings.maps as f64) < FEWEST_FOUND);
-        match dark {
-            Some(probe) => Err(Error::Scene(format!(
+        if let Some(probe) = dark {
+            return Err(Error::Scene(format!(
                 "the pilot maps found {} photons about {}; allowed: at least {FEWEST_FOUND}: ask for a larger pilot",
                 probe.found * settings.maps as f64,
                 probe.name
-            ))),
-            None => Ok(pilot),
+            )));
         }
+        pilot.keep_channels();
+        Ok(pilot)
+    }
+
+    /// One channel where all are alike, and otherwise those that there is light in.
+    fn keep_channels(&mut self) {
+        let are_alike = self.probes.chunks(3).all(|of| of.iter().all(|p| p.values == of[0].values));
+        self.probes
+            .retain(|p| if are_alike { p.channel == 0 } else { p.values.iter().any(|balls| balls[0] > 0.0) });
     }
 
     /// What [`Pilot::run`] will take: a pilot of the pilot, which stores nothing.
@@ -180,15 +193,16 @@ impl Pilot {
             check(scene, &sensor)?;
             let reach = reach(scene, &sensor);
             if reach > 0.0 {
-                let (name, reach_mfp) = (sensor.name.clone(), reach / mean_free_path(scene, &sensor));
-                pilot.probes.push(Probe {
-                    name,
+                let reach_mfp = reach / mean_free_path(scene, &sensor);
+                pilot.probes.extend((0..3).map(|channel| Probe {
+                    name: sensor.name.clone(),
+                    channel,
                     reach,
                     reach_mfp,
                     values: Vec::new(),
                     bends: Vec::new(),
                     found: 0.0,
-                });
+                }));
                 chosen.push(sensor);
             } else {
                 pilot.on_boundary.push(sensor.name);
@@ -222,15 +236,17 @@ impl Pilot {
         let (_, maps) = maps(scene, (chosen, OF_POINTS), histories, Part::WHOLE, margin, progress)?;
         self.preparation_seconds += start.elapsed().as_secs_f64() / (settings.photons * settings.maps) as f64;
         let queries = chosen.len() as f64 * settings.maps as f64;
-        for (sensor, probe) in chosen.iter().zip(&mut self.probes) {
+        let weights = FIT.get_or_init(bend_weights);
+        for (sensor, probes) in chosen.iter().zip(self.probes.chunks_mut(3)) {
             let Some(map) = maps.points_of(sensor) else {
                 continue;
             };
             let Quantity::Fluence(p) = sensor.quantity else { continue };
             let sigma_t = scene.medium_at(p).map_or(crate::Spectrum::ONE, |m| m.sigma_t(p));
-            let mut values = [0.0; BALLS];
-            for (ball, value) in values.iter_mut().enumerate() {
-                let gather = Gather::radius(radius(probe.reach, ball))?;
+            let reach = probes[0].reach;
+            let mut values = [[0.0; BALLS]; 3];
+            for ball in 0..BALLS {
+                let gather = Gather::radius(radius(reach, ball))?;
                 map.check_radius(gather.cap())?;
                 let uniform = Estimator::new(Kernel::Uniform, gather);
                 let start = Instant::now();
@@ -238,14 +254,17 @@ impl Pilot {
                 let (seconds, found) = &mut self.queries[ball];
                 *seconds += start.elapsed().as_secs_f64() / queries;
                 *found += estimate.found as f64 / queries;
-                *value = estimate.value.mean();
-                if ball == 0 {
-                    probe.found += estimate.found as f64 / settings.maps as f64;
+                for (probe, values) in probes.iter_mut().zip(&mut values) {
+                    values[ball] = estimate.value[probe.channel];
+                    if ball == 0 {
+                        probe.found += estimate.found as f64 / settings.maps as f64;
+                    }
                 }
             }
-            let weights = FIT.get_or_init(bend_weights);
-            probe.bends.push(values.iter().zip(weights).map(|(x, w)| w * x).sum());
-            probe.values.push(values);
+            for (probe, values) in probes.iter_mut().zip(values) {
+                probe.bends.push(values.iter().zip(weights).map(|(x, w)| w * x).sum());
+                probe.values.push(values);
+            }
         }
         Ok(())
     }
@@ -278,8 +297,6 @@ impl Pilot {
         };
         let photons = round_up(needed);
         let (bias2, noise2) = (self.bias2(&laws, radius), self.variance(&laws, radius) / photons);
-        let errors = self.resample(&laws, target, radius, photons);
-        let quantile = |part: f64| errors[(part * errors.len() as f64) as usize];
         let mut gathered: Vec<f64> =
             self.probes.iter().map(|p| p.found(radius) * photons / self.photons as f64).collect();
         gathered.sort_by(f64::total_cmp);
@@ -288,7 +305,7 @@ impl Pilot {
             photons: photons as u64,
             gathered: [gathered[0], gathered[gathered.len() / 2], gathered[gathered.len() - 1]],
             error: (bias2 + noise2).sqrt(),
-            interval: Interval::new(quantile(0.025), quantile(0.975)),
+            interval: self.interval(&laws, target, (radius, photons), bias2 + noise2),
             bias: bias2.sqrt(),
             noise: noise2.sqrt(),
             limited_by: (radius > 0.99 * tightest.reach).then(|| tightest.name.clone()),
@@ -329,16 +346,19 @@ impl Pilot {
         best
     }
 
-    /// Errors that the maps allow at this radius with so many photons, in rising order.
+    /// The errors that the maps allow at this radius with so many photons, 95 per cent of them, about the predicted square.
     ///
     /// Whole maps are drawn again with replacement, since all probes share them, and the laws fitted anew; what the
     /// prior alone tells of each bend is drawn on top. The radius was chosen on the same maps, so that they promise a
     /// little too much of it: how much a drawn set promises too much of its own choice, against the laws of all maps,
     /// and more than of a radius not chosen on it, is added to all squared errors.
-    fn resample(&self, laws: &[Law], target: f64, radius: f64, photons: f64) -> Vec<f64> {
+    ///
+    /// Squares of bends that are known badly are too large on average, and all the more those of bends drawn about them: the lower end is
+    /// as far below the prediction as the upper one is above it, if that is lower, and no lower than the noise alone.
+    fn interval(&self, laws: &[Law], target: f64, (radius, photons): (f64, f64), predicted: f64) -> Interval {
         let maps = self.probes[0].values.len();
         let square = |laws: &[Law], r: f64, n: f64| self.bias2(laws, r) + self.variance(laws, r) / n;
-        let (mut squares, mut promised) = (Vec::new(), Moments::new());
+        let (mut squares, mut noises, mut promised) = (Vec::new(), Vec::new(), Moments::new());
         for set in 0..RESAMPLES {
             let mut stream = Stream::new(self.seed, Purpose::Resampling, set, 0);
             let mut counts = vec![0.0; maps];
@@ -351,6 +371,7 @@ impl Pilot {
                 promised.push(chosen - (square(laws, radius, photons) - square(&drawn, radius, photons)));
             }
             let noise = self.variance(&drawn, radius) / photons;
+            noises.push(noise);
             for _ in 0..DRAWS {
                 let mut bias2 = 0.0;
                 for (p, law) in self.probes.iter().zip(&drawn) {
@@ -361,8 +382,14 @@ impl Pilot {
             }
         }
         let optimism = if promised.n() > 0 { promised.mean().max(0.0) } else { 0.0 };
-        squares.sort_by(f64::total_cmp);
-        squares.into_iter().map(|x| (x + optimism).sqrt()).collect()
+        let quantile = |of: &mut [f64], part: f64| {
+            of.sort_by(f64::total_cmp);
+            of[(part * of.len() as f64) as usize]
+        };
+        let low = quantile(&mut squares, 0.025) + optimism;
+        let high = quantile(&mut squares, 0.975) + optimism;
+        let low = low.min((2.0 * predicted - high).max(quantile(&mut noises, 0.025)));
+        Interval::new(low.sqrt(), high.sqrt())
     }
 }
 
@@ -544,7 +571,7 @@ fn round_up(x: f64) -> f64 {
     (x / unit).ceil() * unit
 }
 
-/// What the path tracer needs for a root mean square relative error of `target` over the fluence probes.
+/// What the path tracer needs for a root mean square relative error of `target` over the fluence probes and their channels.
 ///
 /// # Errors
 /// Those of [`super::by_paths`]; `Error::Scene` if a pilot of paths finds no light at a probe.
@@ -562,13 +589,12 @@ pub fn path_advice(
     for (index, sensor) in sensors.iter().enumerate() {
         let (channels, tails) =
             paths::read(scene, sensor, index as u64, &settings, Guides::default(), progress)?;
-        let mean = channels.iter().map(Moments::mean).sum::<f64>() / 3.0;
-        if mean == 0.0 {
+        let of_channel = |m: &Moments| m.variance() / (m.mean() * m.mean());
+        let relative: Moments = channels.iter().filter(|m| m.mean() > 0.0).map(of_channel).collect();
+        if relative.n() == 0 {
             return Err(Error::Scene(format!("{samples} paths from {} found no light", sensor.name)));
         }
-        // The mean of the channels varies at most as much as the channels do on average.
-        let own = channels.iter().map(Moments::variance).sum::<f64>() / 3.0;
-        variance += own / (mean * mean) / sensors.len() as f64;
+        variance += relative.mean() / sensors.len() as f64;
         is_heavy_tailed |=
             channels.iter().zip(&tails).any(|(m, tail)| super::is_heavy_tailed(m) || tail.is_heavy(m));
     }

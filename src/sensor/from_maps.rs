@@ -2,6 +2,7 @@
 
 use super::Measurement;
 use super::order_maps::AskedMap;
+use super::reach::has_extinction;
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Boundary, Treatment};
@@ -124,7 +125,7 @@ pub(super) fn read_bins(
 /// That a fluence is asked for where a map has none.
 pub(super) fn outside(sensor: &Sensor, p: DVec3) -> Error {
     Error::Scene(format!(
-        "sensor {}: a photon map knows the fluence inside a medium only, and ({}, {}, {}) is outside: use paths",
+        "sensor {}: a photon map knows the fluence only where light of every channel collides, and at ({}, {}, {}) it does not: use paths",
         sensor.name, p.x, p.y, p.z
     ))
 }
@@ -151,11 +152,7 @@ fn read(
             for _ in 0..POINTS {
                 let p = binned.point(bin, scene.periodic_cell(), stream.triple());
                 sum += match binned {
-                    Binned::Fluence { .. }
-                        if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) =>
-                    {
-                        return Err(outside(sensor, p));
-                    }
+                    Binned::Fluence { .. } if !has_extinction(scene, p) => return Err(outside(sensor, p)),
                     Binned::Fluence { .. } => fluence_at(around, map, p, estimator, result),
                     Binned::Radiance { dir, .. } => {
                         let ray = Ray::new(p, *dir);

@@ -5,7 +5,7 @@ use super::order_maps::{
     Kept, OrderMaps, RadianceMaps, Stored, is_radiance, is_tallied, map_orders, maps, maps_of, max_order,
     scored,
 };
-use super::reach::check_reach;
+use super::reach::{check_reach, empty_place, has_extinction};
 use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::Spectrum;
 use crate::error::{Error, Result};
@@ -473,8 +473,9 @@ pub(super) fn margin(sensors: &[Sensor], side: DVec2, cap: f64) -> Result<f64> {
 /// Whether a volume map can answer a sensor.
 pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
     match sensor.quantity {
-        Quantity::Fluence(p) if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) => {
-            Err(outside(sensor, p))
+        Quantity::Fluence(p) if !has_extinction(scene, p) => Err(outside(sensor, p)),
+        Quantity::Binned(ref binned @ Binned::Fluence { .. }) => {
+            empty_place(scene, binned).map_or(Ok(()), |p| Err(outside(sensor, p)))
         }
         Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. }) if scene.plan().has_surfaces => {
             Err(Error::Scene(format!(

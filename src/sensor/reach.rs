@@ -1,4 +1,4 @@
-//! Where photons of lights from outside have been.
+//! Where photons pass: those of lights from outside, and those that collide.
 
 use crate::error::{Error, Result};
 use crate::light::{Faces, Light, Section};
@@ -57,4 +57,27 @@ pub(super) fn check_reach(scene: &Scene, sensor: &Sensor) -> Result<()> {
         ))),
         None => Ok(()),
     }
+}
+
+/// Whether light of every channel collides at a place.
+pub(super) fn has_extinction(scene: &Scene, p: DVec3) -> bool {
+    scene.medium_at(p).is_some_and(|medium| medium.sigma_t(p).min() > 0.0)
+}
+
+/// Points of a bin where extinction is looked for, of all bins together, and the fewest of one of them.
+const LOOKED_AT: (usize, usize) = (4096, 1 << 20);
+const FEWEST: usize = 4;
+
+/// A place in the bins where light of some channel does not collide, if there is one among evenly spread points, the same for every seed:
+/// an empty part that is smaller than they lie apart may be missed.
+pub(super) fn empty_place(scene: &Scene, binned: &Binned) -> Option<DVec3> {
+    let (bins, cell) = (binned.bins(), scene.periodic_cell());
+    let points = (LOOKED_AT.1 / bins).clamp(FEWEST, LOOKED_AT.0);
+    // Roots of x^4 = x + 1: steps whose multiples fill a cube evenly.
+    const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
+    (0..bins).find_map(|bin| {
+        (0..points)
+            .map(|i| binned.point(bin, cell, STEPS.map(|step| (0.5 + i as f64 * step).fract())))
+            .find(|&p| !has_extinction(scene, p))
+    })
 }

@@ -1,12 +1,11 @@
 //! Sensors read by light tracing: photons are followed and scored as they pass, and none is stored.
 
 use super::order_maps::{is_tallied, max_order};
-use super::reach::check_reach;
+use super::reach::{check_reach, empty_place};
 use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::error::{Error, Result};
 use crate::light::Light;
 use crate::photons::{Emitter, Histories, Ledger, Part, Photon, Run, Scores, score_bytes};
-use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Orders, Quantity, Scene, Scoring, Sensor};
 use crate::stats::Moments;
 use crate::transport::{BLOCK, Progress, blocks_at_once};
@@ -97,9 +96,6 @@ pub fn by_tallies(scene: &Scene, settings: &TallySettings, progress: &dyn Progre
     Ok(TallyReadings { measurements: all, ledger })
 }
 
-/// Points of a volume that are asked whether light collides there.
-const ASKED: u64 = 4096;
-
 /// Whether photons meet what a sensor measures.
 fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
     let refuse =
@@ -117,19 +113,13 @@ fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
             Ok(())
         }
         Quantity::Binned(binned @ Binned::Fluence { scoring: Scoring::Collision, .. }) => {
-            let mut stream = Stream::new(1, Purpose::Scores, 0, 0);
-            for _ in 0..ASKED {
-                let bin = stream.index(binned.bins());
-                let p = binned.point(bin, scene.periodic_cell(), stream.triple());
-                if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) {
-                    return Err(Error::Scene(format!(
-                        "sensor {}: no light collides at ({}, {}, {}); allowed for a fluence there: `scoring = \
-                         \"track-length\"`",
-                        sensor.name, p.x, p.y, p.z
-                    )));
-                }
-            }
-            Ok(())
+            empty_place(scene, binned).map_or(Ok(()), |p| {
+                Err(Error::Scene(format!(
+                    "sensor {}: no light collides at ({}, {}, {}); allowed for a fluence there: `scoring = \
+                     \"track-length\"`",
+                    sensor.name, p.x, p.y, p.z
+                )))
+            })
         }
         Quantity::Binned(_) => Ok(()),
         _ if is_tallied(sensor) => Ok(()),

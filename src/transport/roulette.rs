@@ -42,7 +42,9 @@ impl Roulette {
             }
             Roulette::Below(threshold) => {
                 let largest = kept.max();
-                if largest >= threshold {
+                if largest == 0.0 {
+                    None
+                } else if largest >= threshold {
                     Some(kept)
                 } else {
                     let q = largest / threshold;

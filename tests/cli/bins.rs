@@ -140,7 +140,25 @@ fn bins_that_cannot_be_are_refused() {
     let beside =
         "mean-fluence = { min = [-1, -1, -1], max = [1, 1, 1], cells = [2, 2, 2], scoring = \"collision\" }";
     refused(ROOM, &sensor(beside), &["light"], &["sensor s", "no light collides", "track-length"]);
-    refused(ROOM, &sensor(beside), &["photons"], &["sensor s", "inside a medium only", "use paths"]);
+    refused(
+        ROOM,
+        &sensor(beside),
+        &["photons"],
+        &["sensor s", "only where light of every channel collides", "use paths"],
+    );
+    // Whatever the seed: the points that a map is asked at would miss a layer that is as thin as a hundredth.
+    let layered = "[[regions]]\nshape = { cuboid = { min = [0, 0, 0], max = [1, 1, 1] } }\nsigma_t = 1\nalbedo = 0.9\ng = 0\n\
+        density = { layers = { axis = \"x\", edges = [0, 0.01, 1], density = [0, 1] } }\n\
+        [[lights]]\npoint = { position = [2, 0.5, 0.5], power = 10 }\n";
+    for seed in ["1", "2", "3", "4"] {
+        let by_maps = ["photons", "--photons", "16000", "--radius", "0.1", "--seed", seed];
+        refused(
+            layered,
+            &sensor("mean-fluence = { region = 0 }"),
+            &by_maps,
+            &["sensor s", "collides", "use paths"],
+        );
+    }
     // Files and memory.
     let array = folder.0.path().join("none").join("a.npy");
     let one = sensor("mean-fluence = { region = 0 }");

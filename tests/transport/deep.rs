@@ -4,14 +4,16 @@
 //! a void in a shield of ten mean free paths, its reflecting planes unfolded.
 
 use crate::checks::slab::{exact, referee};
-use crate::support::run::numbers;
-use crate::support::scenes::{Incidence, cuboid, region, slab, transmittance};
+use crate::support::run::{histories, numbers, paths};
+use crate::support::scenes::{
+    Incidence, bounded, cuboid, emitting_sphere, homogeneous, region, slab, sphere, transmittance,
+};
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::integrators::Guides;
 use turbid::light::{Light, VolumeSource};
-use turbid::scene::{Orders, Quantity, Scene, SceneParts, Sensor};
+use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts, Sensor};
 use turbid::sensor::{NoError, PathSettings, by_paths, sample_guided};
 use turbid::stats::Moments;
 use turbid::transport::{NoProgress, WeightWindows};
@@ -106,5 +108,24 @@ fn windows_cross_twenty_mean_free_paths() {
         let moments = guided(&slab(tau, albedo, 0.0, how), &transmittance(tau), 1 << 16, seed);
         let value = exact(referee(tau, albedo, how).transmittance());
         verdict::agrees(&format!("{how:?}"), &moments, value, 0.25 * value.0, seed);
+    }
+}
+
+/// Paths that a black body has ended go no further, whatever the windows: there is nothing to choose a channel by.
+#[test]
+fn windows_end_where_a_colored_body_absorbs_everything() {
+    let coated = |radius: f64, albedo: f64| Region {
+        shape: sphere(DVec3::ZERO, radius),
+        medium: homogeneous(Spectrum::rgb(1.0, 2.0, 3.0), Spectrum::grey(albedo), 0.0),
+    };
+    let lamp = emitting_sphere(DVec3::new(0.0, 2.0, 0.5), 0.4);
+    let scene = bounded(vec![coated(1.0, 0.0), coated(0.3, 0.9)], vec![], vec![lamp]);
+    let quantity = Quantity::Fluence(DVec3::new(0.2, 0.1, 0.05));
+    let windows = WeightWindows::new(&scene).unwrap();
+    let guides = Guides { windows: Some(&windows), directions: None };
+    let by_windows = histories(1 << 17, 36, |s| sample_guided(&scene, &quantity, Orders::ALL, guides, s).0);
+    let by_paths = paths(&scene, quantity, Orders::ALL, 1 << 17, 37);
+    for (channel, (a, b)) in by_windows.iter().zip(&by_paths).enumerate() {
+        verdict::agree(&format!("channel {channel}"), a, b, 0.02, 36);
     }
 }

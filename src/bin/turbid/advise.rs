@@ -27,8 +27,8 @@ use turbid::sensor::{Advice, PathAdvice, Pilot, PilotSettings, path_advice};
 /// Of fluence probes: small pilot maps measure two laws about each fluence probe: the bias, which grows as the square of the radius where
 /// the field bends, by comparing balls of several radii; and the noise, which falls with the photons in the ball, by
 /// its spread over maps. Printed are the radius and the number of photons that bring the root mean square relative
-/// error over all probes to the target with the fewest photons, for the plain estimate with the uniform kernel; k is
-/// what such a ball holds. Low and high are the ends of a 95 per cent interval. Seconds are this machine's.
+/// error over all probes, and the channels that they have light in, to the target with the fewest photons, for the plain estimate with
+/// the uniform kernel; k is what such a ball holds. Low and high are the ends of a 95 per cent interval. Seconds are this machine's.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Advise {
