@@ -137,6 +137,10 @@ fn value_of(value: &Bound<'_, PyAny>, depth: u32) -> PyResult<toml::Value> {
     }
     // Arrays and numbers of NumPy.
     if let Ok(plain) = value.call_method0("tolist") {
+        // Numbers wider than those of Python stay what they are.
+        if plain.get_type().is(value.get_type()) {
+            return value.extract().map(toml::Value::Float);
+        }
         return value_of(&plain, depth + 1);
     }
     if let Ok(path) = value.extract::<PathBuf>() {

@@ -144,6 +144,11 @@ def test_mistakes_are_told_as_the_program_tells_them(exact_program):
         exact.slab(1)
     with pytest.raises(TypeError, match="unexpected keyword argument 'alebdo'"):
         exact.slab(1, 0.5, alebdo=1)
+    for word in ("False", 1, np.array([True, False])):
+        with pytest.raises(turbid.Error, match="rayleigh is .*; allowed: True or False"):
+            turbid.exact.slab(2.0, 0.5, rayleigh=word)
+    with pytest.raises(turbid.Error, match="tau is a masked array; "):
+        turbid.exact.slab(np.ma.array([1.0, 2.0], mask=[0, 1]), 0.5)
     with pytest.raises(turbid.Error, match="problem is 'cylinder'; allowed: slab, "):
         exact.ask("cylinder")
     with pytest.raises(turbid.Error, match="slab has no argument '--help'"):

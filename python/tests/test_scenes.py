@@ -169,3 +169,17 @@ def test_built_in_scenes_are_told():
 def test_stubs_and_marker_are_installed():
     folder = pathlib.Path(turbid.__file__).parent
     assert (folder / "py.typed").exists() and (folder / "_turbid.pyi").exists()
+
+
+def test_numbers_wider_than_those_of_python():
+    wide, usual = (
+        turbid.measure("slab", "paths", samples=2000, parameters={"tau": kind(1.5)}) for kind in (np.longdouble, float)
+    )
+    assert [one.mean for one in wide] == [one.mean for one in usual]
+
+
+def test_flags_are_truth_values():
+    with pytest.raises(turbid.Error, match="importance is 'no'; allowed: True or False"):
+        turbid.render("fogbox", importance="no")
+    with pytest.raises(turbid.Error, match="weight_windows is 0; allowed: True or False"):
+        turbid.measure("slab", "paths", weight_windows=0)

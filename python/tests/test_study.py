@@ -224,6 +224,8 @@ def test_wrong_arguments(study_program, tmp_path):
     assert told(STUDY, photons=float("nan")).startswith("photons is nan; allowed: ")
     assert told(STUDY, seed=-1).startswith("seed is -1; allowed: ")
     assert told(STUDY, threads=0).startswith("threads is 0; allowed: ")
+    assert told(STUDY, out="").startswith("out is empty; allowed: ")
+    assert told(STUDY, dry_run="no") == "dry_run is 'no'; allowed: True or False"
     assert told(STUDY, part="1/3").startswith("a part without out would be lost")
     for part in ("4/3", (0, 3), (1, 2, 3), "x"):
         assert "allowed: a part such as 3/16" in told(STUDY, part=part, out=tmp_path / "out")

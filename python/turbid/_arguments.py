@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
+import numpy as np
+
 from ._turbid import Error
 
 
@@ -32,6 +34,13 @@ def real(name: str, value: Any) -> float:
 
 def optional_real(name: str, value: Any) -> Optional[float]:
     return None if value is None else real(name, value)
+
+
+def flag(name: str, value: Any) -> bool:
+    """A truth value; text such as "no" would be true."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise Error(f"{name} is {value!r}; allowed: True or False")
+    return bool(value)
 
 
 def threads(value: Any) -> Optional[int]:

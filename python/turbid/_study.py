@@ -14,7 +14,7 @@ from typing import Any, Optional, Sequence, Union
 import numpy as np
 
 from . import _turbid
-from ._arguments import real, seed as _seed, threads as _threads
+from ._arguments import flag, real, seed as _seed, threads as _threads
 from ._progress import Progress, told
 from ._turbid import Error
 
@@ -121,6 +121,9 @@ def study(
     >>> whole = found.results[found.results["place"] == "all"]
     >>> whole["k"], whole["rmse"], whole["rmse_error"]
     """
+    dry_run = flag("dry_run", dry_run)
+    if out is not None and not os.fspath(out):
+        raise Error("out is empty; allowed: a folder, or None for a temporary one")
     folders = [os.fspath(merge)] if isinstance(merge, (str, os.PathLike)) else [os.fspath(one) for one in merge]
     if part is not None and (folders or dry_run):
         raise Error("part measures, merge concludes and dry_run does neither; allowed: one of them")
@@ -137,7 +140,7 @@ def study(
         threads=_threads(threads),
         part=_part(part),
         merge=folders,
-        dry_run=bool(dry_run),
+        dry_run=dry_run,
         program=_turbid.__file__,
     )
     given = dict(study) if isinstance(study, Mapping) and not isinstance(study, dict) else study

@@ -24,6 +24,7 @@ from typing import Any, Callable, Iterator, NamedTuple, Optional
 import numpy as np
 
 from . import _turbid
+from ._arguments import flag
 from ._progress import Progress, told
 from ._turbid import Error
 
@@ -147,8 +148,10 @@ class _Questions:
                     continue
                 value = default
             if takes == "nothing":
-                self.fixed += [(name, None)] if value else []
+                self.fixed += [(name, None)] if flag(name, value) else []
                 continue
+            if isinstance(value, np.ma.MaskedArray):
+                raise Error(f"{name} is a masked array; allowed: an array of which every number counts")
             if takes == "descriptions":
                 texts = _descriptions(value)
                 if texts is not None:

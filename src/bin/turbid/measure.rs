@@ -40,7 +40,8 @@ use turbid::transport::WeightWindows;
 ///
 /// An error knows what was drawn. Where few of the paths carry the mean, as those that find a void through many mean free paths
 /// of a shield, a run may draw none of them, and nothing in it says so: its error is then many times too small. Take
-/// --weight-windows there, and do not believe plain paths unless these agree.
+/// --weight-windows there, and do not believe plain paths unless these agree. So it is with photon maps that rarely hold a photon of large
+/// power, such as one of a faint light that alone is green: maps without any do not tell of it, however many.
 ///
 /// A sensor with bins has a row for each: columns bin_i, bin_j, bin_k number it along each axis, x, y, z are its middle. Flux and
 /// absorption are scored by photons as they pass; fluence and radiance by `photons` are estimates from maps at 4 random
