@@ -125,7 +125,7 @@ pub(super) fn read_bins(
 /// That a fluence is asked for where a map has none.
 pub(super) fn outside(sensor: &Sensor, p: DVec3) -> Error {
     Error::Scene(format!(
-        "sensor {}: a photon map knows the fluence only where light of every channel collides, and at ({}, {}, {}) it does not: use paths",
+        "sensor {}: a photon map knows the fluence only where light of every channel collides, and ({}, {}, {}) is outside: use paths",
         sensor.name, p.x, p.y, p.z
     ))
 }

@@ -44,6 +44,9 @@ pub fn body_moments(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> 
 /// hold no photons but by chance.
 pub(super) const LEAST_PART: f64 = 1e-13;
 
+/// The least part whose digits are known: less than that of the smallest body in the largest ball that scenes hold.
+const LEAST_OF_ALL: f64 = 1e-200;
+
 /// A box whose faces are all nearer than this part of the radius is read as if the kernel were everywhere as in its middle: what its
 /// shells make of it would be lost in their rounding.
 const SMALL: f64 = 1e-3;
@@ -73,7 +76,7 @@ pub(in crate::estimators) fn body_part(kernel: Kernel, body: &Shape, point: DVec
         }
         _ => false,
     };
-    part.max(if is_known { f64::MIN_POSITIVE } else { LEAST_PART })
+    part.max(if is_known { LEAST_OF_ALL } else { LEAST_PART })
 }
 
 /// The unit normal, inwards, at the point of the boundary that is nearest to a point inside; any one of several.
