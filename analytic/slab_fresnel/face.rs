@@ -212,6 +212,7 @@ mod tests {
             for i in 0..=200 {
                 let cosine = libm::pow(10.0, -0.025 * f64::from(i));
                 let entering = face.inside(cosine).map(|inside| face.reflected(inside, cosine));
+                // Nine roundings.
                 for (r, t) in entering.into_iter().chain([face.reflected_inside(cosine)]) {
                     assert!((r + t - 1.0).abs() < 2e-15, "{n} {cosine}: {r} and {t}");
                 }

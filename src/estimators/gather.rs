@@ -58,23 +58,13 @@ pub enum Gather {
     },
 }
 
-/// A radius whose powers are numbers: what scenes hold \[L\].
-fn checked(what: &'static str, radius: f64) -> Result<Positive> {
-    let positive = Positive::new(what, radius)?;
-    if (1e-30..=1e30).contains(&radius) {
-        Ok(positive)
-    } else {
-        Err(Error::out_of_range(what, radius, "1e-30 to 1e30"))
-    }
-}
-
 impl Gather {
     /// All photons within `radius` \[L\].
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless `radius` is from 1e-30 to 1e30.
     pub fn radius(radius: f64) -> Result<Self> {
-        Ok(Gather::Radius(checked("the gather radius", radius)?))
+        Ok(Gather::Radius(Positive::length("the gather radius", radius)?))
     }
 
     /// The k nearest photons within `max_radius` \[L\].
@@ -82,7 +72,7 @@ impl Gather {
     /// # Errors
     /// [`Error::OutOfRange`] if k is below 2, or `max_radius` not from 1e-30 to 1e30.
     pub fn nearest(k: usize, max_radius: f64) -> Result<Self> {
-        let max_radius = checked("the largest gather radius", max_radius)?;
+        let max_radius = Positive::length("the largest gather radius", max_radius)?;
         Ok(Gather::Nearest { k: NeighborCount::new(k)?, max_radius })
     }
 
@@ -141,7 +131,7 @@ impl Gather {
     /// # Errors
     /// As [`Gather::nearest`].
     pub fn nearest_biased(k: usize, max_radius: f64) -> Result<Self> {
-        let max_radius = checked("the largest gather radius", max_radius)?;
+        let max_radius = Positive::length("the largest gather radius", max_radius)?;
         Ok(Gather::NearestBiased { k: NeighborCount::new(k)?, max_radius })
     }
 

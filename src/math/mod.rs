@@ -18,3 +18,10 @@ pub const FOUR_PI: f64 = 4.0 * std::f64::consts::PI;
 pub fn cosine_pair(a: glam::DVec3, b: glam::DVec3) -> (f64, f64) {
     (0.5 * (a - b).length_squared(), 0.5 * (a + b).length_squared())
 }
+
+/// The point of this number, from 1 on, of those that fill a unit cube evenly: fractional parts of multiples of three irrational numbers,
+/// those of 1/x, 1/x^2 and 1/x^3 with x^4 = x + 1 (Roberts 2018).
+pub fn evenly_in_cube(number: u32) -> [f64; 3] {
+    const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
+    STEPS.map(|step| (f64::from(number) * step).fract())
+}

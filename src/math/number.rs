@@ -59,6 +59,16 @@ ranged!(
 );
 
 impl Positive {
+    /// A length whose powers are numbers, as those of scenes: from 1e-30 to 1e30.
+    pub fn length(quantity: &str, value: f64) -> Result<Self> {
+        let positive = Self::new(quantity, value)?;
+        if (1e-30..=1e30).contains(&value) {
+            Ok(positive)
+        } else {
+            Err(Error::out_of_range(quantity, value, "from 1e-30 to 1e30"))
+        }
+    }
+
     /// One.
     pub const ONE: Positive = Positive(1.0);
 }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::light::{Faces, Light, Section};
+use crate::math::evenly_in_cube;
 use crate::scene::{Binned, Crossing, Scene, Sensor, Space};
 use glam::DVec3;
 
@@ -73,11 +74,9 @@ const FEWEST: usize = 4;
 pub(super) fn empty_place(scene: &Scene, binned: &Binned) -> Option<DVec3> {
     let (bins, cell) = (binned.bins(), scene.periodic_cell());
     let points = (LOOKED_AT.1 / bins).clamp(FEWEST, LOOKED_AT.0);
-    // Roots of x^4 = x + 1: steps whose multiples fill a cube evenly.
-    const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
     (0..bins).find_map(|bin| {
-        (0..points)
-            .map(|i| binned.point(bin, cell, STEPS.map(|step| (0.5 + i as f64 * step).fract())))
+        (1..=points as u32)
+            .map(|i| binned.point(bin, cell, evenly_in_cube(i)))
             .find(|&p| !has_extinction(scene, p))
     })
 }

@@ -11,6 +11,7 @@ use crate::harness::{CellId, CellOutput, Group, Settings};
 use glam::{DVec3, Vec3};
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimate, Estimator, Gather, Kernel};
+use turbid::math::evenly_in_cube;
 use turbid::photons::{Histories, Photon, PhotonMap, shoot};
 use turbid::transport::NoProgress;
 
@@ -90,12 +91,10 @@ pub fn group(settings: &Settings) -> Group {
     Group::new(GROUP, settings.pick(176, 512), cost, measure)
 }
 
-/// Points that fill a ball evenly, by the fractional parts of multiples of three irrational numbers (Roberts 2018).
+/// Points that fill a ball evenly.
 pub fn probes() -> Vec<DVec3> {
-    const STEP: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
-    let fraction = |x: f64| x - x.floor();
     (1u32..)
-        .map(|i| DVec3::from_array(STEP.map(|s| PROBED * (2.0 * fraction(f64::from(i) * s) - 1.0))))
+        .map(|i| DVec3::from_array(evenly_in_cube(i).map(|x| PROBED * (2.0 * x - 1.0))))
         .filter(|p| p.length() <= PROBED)
         .take(PROBES)
         .collect()

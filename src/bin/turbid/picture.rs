@@ -4,7 +4,7 @@ use super::made::Filled;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::progress::Bar;
 use super::shared::{kernels, note, parse_count, tell_ahead, whole};
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use std::num::NonZeroUsize;
 use turbid::estimators::boundary::{Rejection, Treatment};
@@ -406,22 +406,9 @@ impl RejectName {
     }
 }
 
-/// Radii that squares are taken of \[L\]: what scenes hold.
-const RADII: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
-
-/// A radius about rays or beams, checked.
-fn radius(flag: &'static str, given: Option<f64>) -> anyhow::Result<Option<Positive>> {
-    let Some(radius) = given else { return Ok(None) };
-    let checked = Positive::new(flag, radius)?;
-    if !RADII.contains(&radius) {
-        bail!("{flag} is {radius}; allowed: from {:e} to {:e}", RADII.start(), RADII.end());
-    }
-    Ok(Some(checked))
-}
-
 /// The radius of --ray-radius, checked.
 pub fn ray_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
-    radius("--ray-radius", given)
+    Ok(given.map(|radius| Positive::length("--ray-radius", radius)).transpose()?)
 }
 
 /// The number of --ray-k.
@@ -431,7 +418,7 @@ pub fn ray_k(given: Option<u32>) -> Option<NonZeroUsize> {
 
 /// The radius of --beam-radius, checked.
 pub fn beam_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
-    radius("--beam-radius", given)
+    Ok(given.map(|radius| Positive::length("--beam-radius", radius)).transpose()?)
 }
 
 /// Change of direct light above which a step of the march is halved.
