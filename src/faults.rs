@@ -98,6 +98,8 @@ pub enum Fault {
     TrackStretched,
     /// A photon that is split shares its weight among as many as there are mostly, not on average.
     WindowUnfair,
+    /// A path that learned directions have made too heavy leaves all of its weight to each of its parts.
+    HeavyKept,
     /// The noise that is advised forgets that photons of one history gather.
     ClustersForgotten,
     /// The variance of the k nearest is that of k + 1.
@@ -146,7 +148,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 67] = [
+    pub const ALL: [Fault; 68] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -192,6 +194,7 @@ impl Fault {
         Fault::PieceStretched,
         Fault::TrackStretched,
         Fault::WindowUnfair,
+        Fault::HeavyKept,
         Fault::ClustersForgotten,
         Fault::FreedomOfThree,
         Fault::VarianceOfRed,

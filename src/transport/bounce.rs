@@ -81,13 +81,16 @@ pub(super) fn bounce<V: Visitor>(
     let reflectance = surface.reflectance(position, found.hit.uv) * factor;
     let survivor = roulette.survive(walker.weight, reflectance, stream);
     let lobe = if is_diffuse { visitor.lobe_on_surface(position, normals.geometric) } else { None };
+    if is_diffuse {
+        *roulette = roulette.led(1.0);
+    }
     let scattered = match lobe {
         None => survivor.zip(surface.scatter(dir, about, stream.pair())),
         Some(lobe) => survivor.and_then(|weight| {
             let after = lobe.sample(stream, |stream| Lambertian::scatter(about, stream.pair()).0);
             let own = || warp::pdf_cosine_hemisphere(after.dot(about));
             let (factor, mixed) = learned(Some(lobe), after, own);
-            *roulette = roulette.scaled(factor);
+            *roulette = roulette.led(factor);
             let weight = weight * factor;
             (weight.max() >= f64::MIN_POSITIVE).then_some((weight, (after, mixed)))
         }),

@@ -9,16 +9,36 @@ use crate::rng::Stream;
 pub enum Roulette {
     /// Photons: survive with the probability that the albedo keeps of the summed power, so that powers stay equal.
     Analog,
-    /// Paths: carry the albedo as a weight, and play only once the largest channel is below this value.
-    Below(f64),
+    /// Paths: carry the albedo as a weight, and play only once the largest channel is below `threshold` times `led`.
+    Below {
+        /// What weights are compared with where no direction was learned.
+        threshold: f64,
+        /// What the density of a learned direction made of the weight at the last event: it falls by as much as more light is expected
+        /// from there, so that such a path is no less worth following. What was led before is over: the product of all these factors has
+        /// no bound, and is no guess of how much light there is.
+        led: f64,
+    },
 }
 
 impl Roulette {
+    /// Paths that play once the largest channel is below this value.
+    pub fn below(threshold: f64) -> Self {
+        Roulette::Below { threshold, led: 1.0 }
+    }
+
     /// The same game for weights of another size: a forced collision makes every weight behind it small.
     pub fn scaled(self, factor: f64) -> Self {
         match self {
             Roulette::Analog => Roulette::Analog,
-            Roulette::Below(threshold) => Roulette::Below(threshold * factor),
+            Roulette::Below { threshold, led } => Roulette::Below { threshold: threshold * factor, led },
+        }
+    }
+
+    /// The same game behind an event whose direction multiplied the weight by this; by 1 where it was not learned.
+    pub fn led(self, led: f64) -> Self {
+        match self {
+            Roulette::Analog => Roulette::Analog,
+            Roulette::Below { threshold, .. } => Roulette::Below { threshold, led },
         }
     }
 
@@ -40,7 +60,8 @@ impl Roulette {
                 let q = kept.sum() / weight.sum();
                 (stream.unit() < q).then(|| kept / q.min(1.0))
             }
-            Roulette::Below(threshold) => {
+            Roulette::Below { threshold, led } => {
+                let threshold = threshold * led;
                 let largest = kept.max();
                 if largest == 0.0 {
                     None

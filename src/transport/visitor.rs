@@ -94,6 +94,13 @@ pub trait Visitor {
         None
     }
 
+    /// The weight above which a history flies on in equal parts; none for most. What directions were learned may make weights grow at
+    /// each event, without a bound.
+    #[inline(always)]
+    fn heaviest(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// The directions that were learned about a place in a medium, to be mixed with those of its phase function; none for most.
     #[inline(always)]
     fn lobe_in_medium(&self, _position: DVec3) -> Option<&Lobe> {

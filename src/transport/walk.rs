@@ -4,6 +4,7 @@ use super::bounce::{bounce, is_looked_through, learned};
 use super::visitor::{Arrival, Step, Visitor, Walker};
 use super::{Flags, Flight, Roulette, free_flight, transmittance};
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use crate::math::Ray;
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
@@ -145,7 +146,7 @@ fn follow<V: Visitor>(
                     visitor.visit(&walker, Step::Truncated(Spectrum::ZERO), stream);
                     return;
                 }
-                roulette = roulette.scaled(factor);
+                roulette = roulette.led(factor);
                 walker = Walker {
                     ray: Ray::new(position, dir),
                     weight: kept,
@@ -193,6 +194,7 @@ fn look_ahead<V: Visitor>(
 }
 
 /// A flight to a collision or to the end of the ray; with games on the way, if the visitor has weight windows: then none where they are lost.
+/// What is too heavy flies in equal parts.
 ///
 /// A flight forgets how far it came: at each stop what goes on flies on from there, each for itself. All of the ray was
 /// looked along before.
@@ -206,6 +208,14 @@ fn fly<V: Visitor>(
     visitor: &V,
 ) -> Option<Flight> {
     let Some(windowed) = visitor.windowed() else {
+        let (weight, heaviest) = (walker.weight.max(), visitor.heaviest());
+        if weight > heaviest && split.count < MOST_SPLIT {
+            let copies = (weight / heaviest).ceil().min(MOST_SPLIT as f64) as usize;
+            walker.weight *= if planted(Fault::HeavyKept) { 1.0 } else { 1.0 / copies as f64 };
+            split.count += copies - 1;
+            let waiting = || Waiting { walker: *walker, roulette, hit, flown };
+            split.waiting.extend(std::iter::repeat_with(waiting).take(copies - 1));
+        }
         return Some(free_flight(scene, &walker.ray, end, walker.interior, walker.weight, forced, stream));
     };
     loop {

@@ -56,7 +56,7 @@ pub fn photons_survive_as_the_albedo_says() {
     verdict::rate("survivors", survived, 256 * BLOCK, 0.9, 9e-4, 84);
     let (weight, albedo) = (Spectrum::rgb(1.0, 0.5, 2.0), Spectrum::rgb(0.2, 0.9, 0.6));
     let mut stream = Stream::new(85, Purpose::Synthetic, 0, 0);
-    let path = Roulette::Below(1e-3).survive(weight, albedo, &mut stream).unwrap();
+    let path = Roulette::below(1e-3).survive(weight, albedo, &mut stream).unwrap();
     let photon = (0..64).find_map(|_| Roulette::Analog.survive(weight, albedo, &mut stream)).unwrap();
     for c in 0..3 {
         let kept = weight[c] * albedo[c];

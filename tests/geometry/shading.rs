@@ -62,7 +62,7 @@ fn through(scene: &Scene, ray: Ray) -> DVec3 {
             let mut stream = Stream::new(2, Purpose::Synthetic, 0, history);
             let mut exit = Exit(None);
             let start = Walker::new(ray, Spectrum::ONE);
-            walk(scene, start, Roulette::Below(0.0), None, &mut stream, &mut exit);
+            walk(scene, start, Roulette::below(0.0), None, &mut stream, &mut exit);
             exit.0
         })
         .unwrap()

@@ -48,7 +48,7 @@ fn a_coloured_survivor_keeps_the_summed_power() {
 #[test]
 fn every_channel_holds_in_expectation() {
     let (weight, albedo) = (Spectrum::rgb(0.5, 1.0, 2.0), Spectrum::rgb(0.9, 0.5, 0.1));
-    for roulette in [Roulette::Analog, Roulette::Below(0.8), Roulette::Below(10.0)] {
+    for roulette in [Roulette::Analog, Roulette::below(0.8), Roulette::below(10.0)] {
         let kept = histories(N, 5, |s| roulette.survive(weight, albedo, s).unwrap_or(Spectrum::ZERO));
         for c in 0..3 {
             let expected = weight[c] * albedo[c];

@@ -1,7 +1,9 @@
 //! Guided paths: against the exact slab, in a furnace, and what they are worth. Each class and order, by every light and through every
 //! body, is beside bidirectional paths.
 
-use crate::checks::directions::{below_a_pane, guided_paths_find_as_much, learned, of_the_table};
+use crate::checks::directions::{
+    below_a_pane, guided_paths_find_as_much, guided_paths_stay_light, learned, of_the_table,
+};
 use crate::checks::slab::{exact, referee};
 use crate::support::run::numbers;
 use crate::support::scenes::{
@@ -31,6 +33,11 @@ fn led(directions: &Directions) -> Guides<'_> {
 #[test]
 fn they_find_as_much() {
     guided_paths_find_as_much();
+}
+
+#[test]
+fn they_stay_light() {
+    guided_paths_stay_light();
 }
 
 /// What they are worth behind glass: a twentieth of the variance.

@@ -72,7 +72,7 @@ pub fn look(scene: &Scene, camera: &Camera) -> Vec<View> {
         let mut eye = Eye { scene, view };
         let mut stream = Stream::new(0, Purpose::Synthetic, 0, number);
         let walker = Walker { interior: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) };
-        walk(scene, walker, Roulette::Below(1e-6), Some(0), &mut stream, &mut eye);
+        walk(scene, walker, Roulette::below(1e-6), Some(0), &mut stream, &mut eye);
         eye.view
     };
     in_parallel(camera.width() as usize * camera.height() as usize, one)

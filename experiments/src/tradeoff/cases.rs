@@ -302,14 +302,36 @@ impl Setting {
     }
 }
 
-/// The group of a field's path batches.
-pub fn paths_group(field: &Field) -> String {
-    format!("{}-paths", field.name)
+/// What a map is measured against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rival {
+    /// Paths that nothing leads.
+    Paths,
+    /// Paths whose directions follow where photons came from, as far as that gains anything.
+    Guided,
 }
 
-/// The name of a path tracer's case.
-pub fn paths_case(field: &Field, layer: usize) -> String {
-    format!("{} paths t={}", field.name, field.depth(layer))
+impl Rival {
+    /// Both.
+    pub const ALL: [Rival; 2] = [Rival::Paths, Rival::Guided];
+
+    /// Its name in cases.
+    pub fn name(self) -> &'static str {
+        match self {
+            Rival::Paths => "paths",
+            Rival::Guided => "guided paths",
+        }
+    }
+
+    /// The group of its batches in a field.
+    pub fn group(self, field: &Field) -> String {
+        format!("{}-{}", field.name, self.name().replace(' ', "-"))
+    }
+
+    /// The name of its case.
+    pub fn case(self, field: &Field, layer: usize) -> String {
+        format!("{} {} t={}", field.name, self.name(), field.depth(layer))
+    }
 }
 
 #[cfg(test)]

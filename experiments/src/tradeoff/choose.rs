@@ -165,6 +165,18 @@ pub fn break_even_at(case: &Measured, paths: &Paths, currency: Currency, error: 
     }
 }
 
+/// Rays of guided paths over those of paths that nothing leads, to the same error.
+pub fn guided_rays(guided: &Paths, paths: &Paths) -> Estimate {
+    let work =
+        |paths: &Paths| paths.variance.iter().copied().zip(paths.rays.iter().copied()).collect::<Vec<_>>();
+    // Joining batches by number is a free choice: they share nothing.
+    let joined: Vec<_> = work(guided).into_iter().zip(work(paths)).collect();
+    positive(&joined, |batches| {
+        let sum = |of: fn(&((f64, f64), (f64, f64))) -> f64| batches.iter().map(of).sum::<f64>();
+        sum(|b| b.0.0) * sum(|b| b.0.1) / (sum(|b| b.1.0) * sum(|b| b.1.1))
+    })
+}
+
 /// Whether a case has the largest radius, or the largest k, of those tried with its maps: if it is the best, a still
 /// larger one may be better.
 pub fn is_last(case: &Measured, cases: &[&Measured]) -> bool {

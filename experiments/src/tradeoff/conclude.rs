@@ -1,7 +1,7 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
-use super::cases::{FIELDS, PROBES, Setting, THICK, THIN, Treatment};
-use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
+use super::cases::{FIELDS, PROBES, Rival, Setting, THICK, THIN, Treatment};
+use super::choose::{BreakEven, Currency, best_over_best, break_even, guided_rays, most_efficient, regret};
 use super::data::{Data, Measured};
 use super::measure::MAPS;
 use super::predict::{BIAS, NOISE, RMS};
@@ -67,8 +67,9 @@ fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
         let bytes: Moments = size.bytes.iter().collect();
         rows.push(Row::measured(&group, "memory of the map", Unit::new("byte"), &bytes)?.with(asked));
     }
-    for paths in &data.paths {
-        let case = format!("{} paths", paths.field.name);
+    let guided = data.guided.iter().map(|guided| (Rival::Guided, &guided.paths));
+    for (rival, paths) in data.paths.iter().map(|paths| (Rival::Paths, paths)).chain(guided) {
+        let case = format!("{} {}", paths.field.name, rival.name());
         let asked = Parameters { field: Some(paths.field.name), ..Parameters::default() };
         let error: Moments = paths.error.iter().collect();
         rows.push(Row::measured(&case, "error", Unit::FRACTION, &error)?.reference(0.0, 0.0).with(asked));
@@ -76,6 +77,12 @@ fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
         rows.push(Row::measured(&case, "relative variance of a sample", Unit::ONE, &variance)?.with(asked));
         let rays: Moments = paths.rays.iter().collect();
         rows.push(Row::measured(&case, "rays of a sample", Unit::ONE, &rays)?.with(asked));
+    }
+    for (guided, paths) in data.guided.iter().zip(&data.paths) {
+        let case = format!("{} {}", paths.field.name, Rival::Guided.name());
+        let asked = Parameters { field: Some(paths.field.name), ..Parameters::default() };
+        let ratio = guided_rays(&guided.paths, paths);
+        rows.push(Row::estimated(&case, "rays over those of paths", Unit::ONE, &ratio)?.with(asked));
     }
     for field in FIELDS {
         let Some(paths) = data.paths(field) else { continue };

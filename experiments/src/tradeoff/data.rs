@@ -1,6 +1,6 @@
 //! Everything that was measured, case by case.
 
-use super::cases::{FIELDS, Field, LAYERS, Setting, Treatment, paths_case, paths_group};
+use super::cases::{FIELDS, Field, LAYERS, Rival, Setting, Treatment};
 use super::measure::layer_quantity;
 use super::predict::layers;
 use super::split::MapError;
@@ -74,7 +74,7 @@ impl Measured {
     }
 }
 
-/// The path tracer in one field.
+/// Paths in one field.
 pub struct Paths {
     /// The field.
     pub field: &'static Field,
@@ -86,6 +86,16 @@ pub struct Paths {
     pub rays: Vec<f64>,
     /// CPU seconds of one sample on this machine, by batch.
     pub seconds: Vec<f64>,
+}
+
+/// Guided paths in one field.
+pub struct Guided {
+    /// The paths.
+    pub paths: Paths,
+    /// Share of the cells whose directions are used, by batch.
+    pub led: Vec<f64>,
+    /// CPU seconds of learning on this machine, by batch.
+    pub learning: Vec<f64>,
 }
 
 impl Paths {
@@ -119,6 +129,8 @@ pub struct Data {
     pub measured: Vec<Measured>,
     /// By field.
     pub paths: Vec<Paths>,
+    /// By field.
+    pub guided: Vec<Guided>,
     /// By field and number of photons.
     pub sizes: Vec<MapSize>,
 }
@@ -131,7 +143,8 @@ pub fn mean(values: &[f64]) -> f64 {
 impl Data {
     /// Reads the cells.
     pub fn read(settings: &Settings, known: &Predictions, cells: &Cells) -> anyhow::Result<Self> {
-        let mut data = Data { measured: Vec::new(), paths: Vec::new(), sizes: Vec::new() };
+        let mut data =
+            Data { measured: Vec::new(), paths: Vec::new(), guided: Vec::new(), sizes: Vec::new() };
         for field in FIELDS {
             let exact: Vec<f64> = field
                 .depths()
@@ -176,7 +189,13 @@ impl Data {
                 }
                 data.sizes.push(size);
             }
-            data.paths.push(paths(field, &exact, cells)?);
+            data.paths.push(paths(Rival::Paths, field, &exact, cells)?);
+            let group = Rival::Guided.group(field);
+            data.guided.push(Guided {
+                paths: paths(Rival::Guided, field, &exact, cells)?,
+                led: cells.values(&group, "cells led")?,
+                learning: cells.seconds(&group, "learning directions"),
+            });
         }
         Ok(data)
     }
@@ -191,7 +210,7 @@ impl Data {
         self.measured.iter().filter(fits).collect()
     }
 
-    /// The path tracer in one field.
+    /// Paths that nothing leads, in one field.
     pub fn paths(&self, field: &Field) -> Option<&Paths> {
         self.paths.iter().find(|p| p.field == field)
     }
@@ -240,10 +259,10 @@ fn map_errors(
     Ok(maps)
 }
 
-fn paths(field: &'static Field, exact: &[f64], cells: &Cells) -> anyhow::Result<Paths> {
+fn paths(rival: Rival, field: &'static Field, exact: &[f64], cells: &Cells) -> anyhow::Result<Paths> {
     let (mut error, mut variance, mut rays) = (Vec::new(), Vec::new(), Vec::new());
     for (layer, exact) in exact.iter().enumerate() {
-        let case = paths_case(field, layer);
+        let case = rival.case(field, layer);
         let means = cells.values(&case, "fluence")?;
         let squares = cells.values(&case, "square")?;
         let counts = cells.values(&case, "rays")?;
@@ -258,8 +277,8 @@ fn paths(field: &'static Field, exact: &[f64], cells: &Cells) -> anyhow::Result<
             rays[batch] += counts[batch] / LAYERS as f64;
         }
     }
-    let total = cells.seconds(&paths_group(field), "path tracing");
-    let samples = cells.values(&paths_case(field, 0), "samples")?;
+    let total = cells.seconds(&rival.group(field), "path tracing");
+    let samples = cells.values(&rival.case(field, 0), "samples")?;
     let seconds =
         total.iter().zip(samples).map(|(total, samples)| total / (samples * LAYERS as f64)).collect();
     Ok(Paths { field, error, variance, rays, seconds })

@@ -1,14 +1,15 @@
 //! Measuring one map, or one batch of paths.
 
-use super::cases::{FIELDS, Field, LAYERS, Setting, Treatment, paths_case, paths_group};
+use super::cases::{FIELDS, Field, LAYERS, Rival, Setting, Treatment};
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use turbid::Spectrum;
 use turbid::estimators::Estimate;
 use turbid::estimators::boundary::Boundary;
-use turbid::photons::{Histories, PhotonMap, is_in, shoot};
+use turbid::integrators::Guides;
+use turbid::photons::{DirectionSettings, Directions, Histories, PhotonMap, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity};
-use turbid::sensor::sample_counted;
+use turbid::sensor::sample_guided;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
@@ -25,6 +26,11 @@ fn paths(settings: &Settings) -> u64 {
     settings.photons(256, 4096).max(16)
 }
 
+/// Histories that directions of one batch are learned from.
+fn learned(settings: &Settings) -> u64 {
+    settings.photons(4096, 32_768).max(100)
+}
+
 /// All cells: maps by field and number of photons, and batches of paths.
 pub fn groups(settings: &Settings) -> Vec<Group> {
     let mut groups = Vec::new();
@@ -37,9 +43,13 @@ pub fn groups(settings: &Settings) -> Vec<Group> {
                 move |settings: &Settings, cell: &CellId| measure_map(settings, cell, field, photons);
             groups.push(Group::new(Setting::group(field, photons), MAPS, cost, measure).holding(photons));
         }
-        let cost = 20.0 * paths(settings) as f64 * LAYERS as f64;
-        let measure = |settings: &Settings, cell: &CellId| measure_paths(settings, cell, field);
-        groups.push(Group::new(paths_group(field), MAPS, cost, measure));
+        for rival in Rival::ALL {
+            let learning = if rival == Rival::Guided { learned(settings) as f64 } else { 0.0 };
+            let cost = 20.0 * (paths(settings) as f64 * LAYERS as f64 + learning);
+            let measure =
+                move |settings: &Settings, cell: &CellId| measure_paths(settings, cell, field, rival);
+            groups.push(Group::new(rival.group(field), MAPS, cost, measure));
+        }
     }
     groups
 }
@@ -136,10 +146,32 @@ fn gather(output: &mut CellOutput, map: &PhotonMap, setting: &Setting) -> anyhow
     Ok(())
 }
 
-fn measure_paths(settings: &Settings, cell: &CellId, field: &Field) -> anyhow::Result<CellOutput> {
+fn measure_paths(
+    settings: &Settings,
+    cell: &CellId,
+    field: &Field,
+    rival: Rival,
+) -> anyhow::Result<CellOutput> {
     let (scene, replicate) = (field.setup.scene()?, cell.stream("tradeoff"));
     let mut output = CellOutput::new();
     let paths = paths(settings);
+    let directions = match rival {
+        Rival::Paths => None,
+        Rival::Guided => {
+            let asked = DirectionSettings {
+                histories: learned(settings),
+                seed: settings.seed,
+                replicate,
+                share: None,
+            };
+            let directions =
+                output.time("learning directions", |_| Directions::learn(&scene, &asked, &NoProgress))?;
+            let [cells, led] = directions.counts()[0];
+            output.push(rival.group(field), "cells led", led as f64 / cells.max(1) as f64);
+            Some(directions)
+        }
+    };
+    let guides = Guides { directions: directions.as_ref(), ..Guides::default() };
     for layer in 0..LAYERS {
         let depth = field.depth(layer);
         let quantity = Quantity::Fluence(field.setup.body.middle(depth));
@@ -148,7 +180,7 @@ fn measure_paths(settings: &Settings, cell: &CellId, field: &Field) -> anyhow::R
             for path in 0..paths {
                 let history = (layer as u64) << 40 | path;
                 let mut stream = Stream::new(settings.seed, Purpose::Paths, replicate, history);
-                let (value, rays) = sample_counted(&scene, &quantity, Orders::ALL, &mut stream);
+                let (value, rays) = sample_guided(&scene, &quantity, Orders::ALL, guides, &mut stream);
                 output.non_finite += u64::from(!value.is_finite());
                 values.push(value[0]);
                 squares.push(value[0] * value[0]);
@@ -157,7 +189,7 @@ fn measure_paths(settings: &Settings, cell: &CellId, field: &Field) -> anyhow::R
         });
         output.count("paths", paths);
         output.count("rays of paths", total);
-        let case = paths_case(field, layer);
+        let case = rival.case(field, layer);
         output.push(&case, "fluence", values.mean());
         output.push(&case, "square", squares.mean());
         output.push(&case, "samples", paths as f64);

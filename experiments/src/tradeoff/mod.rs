@@ -1,7 +1,7 @@
 //! Claim: a photon map's root mean square error over a slab or a sphere is the predicted one, split into bias and noise,
 //! and from a countable number of queries on it costs less than a path tracer of the same error.
-//! Referee: exact fluence, kernel means, the k nearest law, Poisson's law with clusters. Shown beside it: the path
-//! tracer, the price of 10, 3 and 1 per cent, what a fixed choice of k costs.
+//! Referee: exact fluence, kernel means, the k nearest law, Poisson's law with clusters. Shown beside it: paths,
+//! guided by photons and not, the price of 10, 3 and 1 per cent, what a fixed choice of k costs.
 //!
 //! One query is the fluence at a point. Costs are counted in operations: a ray followed by a photon or a path, a
 //! shadow ray, a photon put into the tree, a photon gathered, each as one; seconds stand beside them.

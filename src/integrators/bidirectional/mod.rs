@@ -97,7 +97,7 @@ fn follow(
     let path = PathVisitor::new(scene, orders, rays, collect).without_joined_above(above);
     let mut visitor =
         Eye { scene, pinhole, sources, light, path, last: None, leaving: None, is_specular: false };
-    let roulette = Roulette::Below(ROULETTE * start.weight.max());
+    let roulette = Roulette::below(ROULETTE * start.weight.max());
     walk(scene, start, roulette, orders.max, stream, &mut visitor);
     visitor.path.rays()
 }

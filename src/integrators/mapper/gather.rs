@@ -37,7 +37,7 @@ impl Mapper<'_> {
                 report.gathering += 1;
                 let mut ray =
                     GatherRay { mapper: self, report, weight, found: Spectrum::ZERO, onwards: None };
-                walk(self.scene, start, Roulette::Below(ROULETTE), Some(1), stream, &mut ray);
+                walk(self.scene, start, Roulette::below(ROULETTE), Some(1), stream, &mut ray);
                 sum += ray.found;
                 onwards = ray.onwards;
             }

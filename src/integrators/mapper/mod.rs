@@ -225,7 +225,7 @@ impl<'a> Mapper<'a> {
     ) -> (Layers, Report) {
         let mut eye = Eye { mapper: self, layers: Layers::ZERO, report: Report::default() };
         let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
-        walk(self.scene, start, Roulette::Below(ROULETTE), Some(0), stream, &mut eye);
+        walk(self.scene, start, Roulette::below(ROULETTE), Some(0), stream, &mut eye);
         (eye.layers, eye.report)
     }
 

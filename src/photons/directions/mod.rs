@@ -120,7 +120,9 @@ impl Directions {
         let medium_at = |p: DVec3| scene.medium_at(p);
         for part in 0..PARTS {
             let count = histories * (part + 1) / PARTS - histories * part / PARTS;
-            let histories = Histories { count, seed, replicate: replicate * PARTS + part, max_order: None };
+            // Different for each part of each repetition, however large the numbers of these are.
+            let replicate = replicate.wrapping_mul(PARTS).wrapping_add(part);
+            let histories = Histories { count, seed, replicate, max_order: None };
             let run = Run { purpose: Purpose::Directions, ..Run::new(scene, &emitter, histories) };
             let pass = run.pass(&kept, progress)?;
             let arrival = |photon: Photon| Arrival::new(&photon, part as usize);
