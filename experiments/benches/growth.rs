@@ -284,7 +284,7 @@ fn amounts(global: u64, volume: u64) -> MapSettings {
         global: Amount::Stored(global),
         caustic: Amount::Emitted(1),
         volume: Amount::Stored(volume),
-        has_beams: false,
+        beams: None,
         indirect: Indirect::Seen,
         seed: 1,
         replicate: 0,

@@ -71,7 +71,7 @@ fn by_photons(scene: &Scene) {
         global: amount,
         caustic: amount,
         volume: amount,
-        has_beams: false,
+        beams: None,
         indirect: Indirect::Seen,
         seed: 1,
         replicate: 0,

@@ -3,8 +3,9 @@
 use crate::error::refuse;
 use pyo3::PyResult;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{BeamBlur, BeamLength, Kernel, RayEnds};
+use turbid::estimators::{BeamBlur, Kernel, RayEnds};
 use turbid::integrators::StepRule;
+use turbid::photons::beams::BeamLength;
 
 /// The choice of this name.
 ///

@@ -12,11 +12,12 @@ use pyo3::types::{PyDict, PyList};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
+use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel, RayEnds};
 use turbid::integrators::Guides;
 use turbid::math::Positive;
 use turbid::memory;
 use turbid::photons::Ledger;
+use turbid::photons::beams::BeamLength;
 use turbid::scene::{Binned, Orders, Scene, Space};
 use turbid::sensor::{
     Measurement, PathSettings, PhotonSettings, Streams, TallySettings, by_bidirectional_paths,

@@ -1,7 +1,7 @@
 //! How maps are filled and read where nothing else is asked for: the choices of `turbid render`, number by number, so that the
 //! same seed makes the same picture.
 
-use crate::choices::{beam_blur, chosen, kernel, step_rule, treatment};
+use crate::choices::{beam_blur, beam_length, chosen, kernel, step_rule, treatment};
 use crate::error::refuse;
 use anyhow::{Context, Result, anyhow};
 use pyo3::prelude::*;
@@ -11,6 +11,7 @@ use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{LEAST_K, Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
+use turbid::photons::beams::BeamLength;
 use turbid::photons::maps::{Amount, Indirect};
 use turbid::scene::Scene;
 
@@ -36,6 +37,7 @@ pub struct Options {
     ray_k: Option<usize>,
     beam_radius: Option<f64>,
     beam_blur: String,
+    beam_length: String,
     kernel: String,
     caustic_kernel: String,
     gather_rays: u32,
@@ -57,6 +59,7 @@ pub struct Readout {
     kernels: [Kernel; 2],
     treatment: Treatment,
     blur: BeamBlur,
+    length: BeamLength,
     rule: StepRule,
     clips_discs: bool,
     /// Photons of the global, the caustic and the volume map.
@@ -93,6 +96,7 @@ impl Options {
             kernels: [kernel("kernel", &self.kernel)?, kernel("caustic_kernel", &self.caustic_kernel)?],
             treatment: treatment(&self.boundary)?,
             blur: beam_blur(&self.beam_blur)?,
+            length: beam_length(&self.beam_length)?,
             rule: step_rule(&self.step_rule)?,
             clips_discs: chosen("edges", &self.edges, &[("none", false), ("clipped", true)])?,
             amounts: [
@@ -106,9 +110,9 @@ impl Options {
 }
 
 impl Readout {
-    /// Whether the volume map is of beams.
-    pub fn has_beams(&self) -> bool {
-        self.options.beam_radius.is_some()
+    /// How far the beams of the volume map go, if it is of beams.
+    pub fn beams(&self) -> Option<BeamLength> {
+        self.options.beam_radius.map(|_| self.length)
     }
 
     /// Whether importance leads photons.
@@ -174,8 +178,12 @@ impl Readout {
             return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
         }
         settings.volume.beam_blur = self.blur;
-        if beam_radius.is_none() && settings.volume.beam_blur != BeamBlur::default() {
-            return Err(anyhow!("beam_blur says how beams are read; allowed: with beam_radius"));
+        settings.volume.beam_length = self.length;
+        let is_told = self.blur != BeamBlur::default() || self.length != BeamLength::default();
+        if beam_radius.is_none() && is_told {
+            return Err(anyhow!(
+                "beam_blur and beam_length say how beams are read; allowed: with beam_radius"
+            ));
         }
         if settings.volume.beam_blur == BeamBlur::ThreeD {
             return Err(anyhow!("beam_blur is 3d, which is about places; allowed of pictures: 1d, 2d"));

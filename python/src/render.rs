@@ -89,8 +89,8 @@ impl Request {
         let [global, caustic, volume] = self.readout.amounts;
         let Streams { seed, replicate } = streams;
         let indirect = self.readout.indirect();
-        let has_beams = self.readout.has_beams();
-        let settings = MapSettings { global, caustic, volume, has_beams, indirect, seed, replicate };
+        let beams = self.readout.beams();
+        let settings = MapSettings { global, caustic, volume, beams, indirect, seed, replicate };
         let learned = ImportanceSettings { seed, replicate, ..Default::default() };
         let learn = || Importance::of(scene, camera, indirect, &learned, watch);
         let importance = self.readout.is_by_importance().then(learn).transpose()?;

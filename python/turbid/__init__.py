@@ -87,7 +87,7 @@ _METHODS = {
     )
     | {"guide": _PATHS},
     "render": dict.fromkeys(
-        "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius ray_k beam_radius beam_blur kernel caustic_kernel "
+        "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius ray_k beam_radius beam_blur beam_length kernel caustic_kernel "
         "gather_rays near step step_rule adapt spacing jitter boundary edges".split(),
         ("photons",),
     )
@@ -352,6 +352,7 @@ def render(
     ray_k: Optional[int] = None,
     beam_radius: Optional[float] = None,
     beam_blur: str = "1d",
+    beam_length: str = "sampled",
     kernel: str = "uniform",
     caustic_kernel: str = "cone",
     gather_rays: int = 64,
@@ -388,6 +389,7 @@ def render(
     ray_k : the radius of each photon about rays is the distance to its ``ray_k``-th nearest other one, at most ``ray_radius``
     beam_radius : the same from photons' flights, stored as beams, which ``volume`` then counts; in place of ``ray_radius`` [L]
     beam_blur : dimensions that beams are blurred in: 1d or 2d
+    beam_length : sampled, or whole: to the end of each medium, with what passes
     gather_rays : rays of a final gathering; 0 reads the global map where the eye looks: fast, and blotchy
     near : rays of a final gathering shorter than this are traced on [L]
     step, step_rule, adapt, jitter : the march through media; the longest step is in [L]
@@ -408,6 +410,7 @@ def render(
         ray_k=_optional_count("ray_k", ray_k, 1, 10**9),
         beam_radius=_optional_real("beam_radius", beam_radius),
         beam_blur=beam_blur,
+        beam_length=beam_length,
         kernel=kernel,
         caustic_kernel=caustic_kernel,
         gather_rays=_count("gather_rays", gather_rays, 0, 1_000_000),

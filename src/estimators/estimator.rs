@@ -3,11 +3,12 @@
 use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
 use super::{
-    BallSum, BeamBlur, BeamEstimator, BeamLength, Codimension, Directional, Estimate, Gather, Kernel,
-    NeighborCount, PlaneEstimator, RayEnds, RayEstimator,
+    BallSum, BeamBlur, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount,
+    PlaneEstimator, RayEnds, RayEstimator,
 };
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};
+use crate::photons::beams::BeamLength;
 use crate::photons::{Photon, PhotonMap};
 use glam::DVec3;
 use std::num::NonZeroUsize;

@@ -32,7 +32,7 @@ mod surface;
 mod transmitted;
 
 pub use beam::BeamEstimator;
-pub use blur::{BeamBlur, BeamLength};
+pub use blur::BeamBlur;
 pub use directional::{CosinePairs, Directional};
 pub use disc_share::{cap_share, disc_share};
 pub use ends::{OwnEnds, RayEnds};

@@ -94,14 +94,7 @@ impl<'a> SensorMaps<'a> {
     /// # Errors
     /// `Error::Scene` that names the sensor, the cell that is too small, what planes cannot be stored of, or beams of two lengths
     pub fn check(scene: &Scene, estimators: &[Estimator]) -> Result<()> {
-        let mut lengths = estimators.iter().filter(|e| e.beam_radius.is_some()).map(|e| e.beam_length);
-        let first = lengths.next();
-        if lengths.any(|length| Some(length) != first) {
-            return Err(Error::Scene(
-                "some beams are sampled and some whole, and one pass stores either; allowed: one beam_length"
-                    .into(),
-            ));
-        }
+        RadianceMaps::check_lengths(estimators)?;
         for estimator in estimators {
             check_rays(scene, scene.sensors(), estimator)?;
             check_orders(scene, scene.sensors(), RadianceMaps::of([estimator]))?;

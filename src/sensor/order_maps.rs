@@ -1,8 +1,8 @@
 //! Maps of one pass by ranges of orders, and which of them answers a sensor.
 
-use crate::error::Result;
-use crate::estimators::{BeamLength, Estimator};
-use crate::photons::beams::{Beam, BeamMap};
+use crate::error::{Error, Result};
+use crate::estimators::Estimator;
+use crate::photons::beams::{Beam, BeamLength, BeamMap};
 use crate::photons::planes::{Plane, PlaneMap};
 use crate::photons::tree::Radii;
 use crate::photons::{Emitter, Flags, Histories, Part, Pass, Photon, PhotonMap, Photons, Run, Storage};
@@ -59,6 +59,22 @@ impl RadianceMaps {
             [true, true] => FluenceMaps::Both,
         };
         wanted
+    }
+
+    /// That one pass can store beams for all of these estimators.
+    ///
+    /// # Errors
+    /// `Error::Scene` for beams of two lengths
+    pub fn check_lengths(estimators: &[Estimator]) -> Result<()> {
+        let mut lengths = estimators.iter().filter(|e| e.beam_radius.is_some()).map(|e| e.beam_length);
+        let first = lengths.next();
+        if lengths.any(|length| Some(length) != first) {
+            return Err(Error::Scene(
+                "some beams are sampled and some whole, and one pass stores either; allowed: one beam_length"
+                    .into(),
+            ));
+        }
+        Ok(())
     }
 
     /// The ranges of orders that need a map each.

@@ -264,7 +264,7 @@ impl PicturePilot {
                     global,
                     caustic,
                     volume,
-                    has_beams: false,
+                    beams: None,
                     indirect: pilot.indirect,
                     seed: pilot.seed,
                     replicate,

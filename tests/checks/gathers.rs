@@ -36,7 +36,7 @@ pub fn steps_that_share_a_gather_have_their_sum() {
             global: Amount::Emitted(1),
             caustic: Amount::Emitted(1),
             volume: Amount::Stored(3000),
-            has_beams: false,
+            beams: None,
             indirect: Indirect::Seen,
             seed: 3,
             replicate: 0,

@@ -137,15 +137,7 @@ pub fn settings(gather_rays: u32) -> Settings {
 
 pub fn filling(emitted: u64, indirect: Indirect, seed: u64, replicate: u64) -> MapSettings {
     let amount = Amount::Emitted(emitted);
-    MapSettings {
-        global: amount,
-        caustic: amount,
-        volume: amount,
-        has_beams: false,
-        indirect,
-        seed,
-        replicate,
-    }
+    MapSettings { global: amount, caustic: amount, volume: amount, beams: None, indirect, seed, replicate }
 }
 
 /// Moments a layer, channels summed; last the sum of the layers.
@@ -184,8 +176,8 @@ pub fn layers_of_maps(
 ) -> Sheet {
     let mut sheet = Sheet::default();
     for replicate in 0..MAPS {
-        let has_beams = settings.volume.beam_radius.is_some();
-        let filled = MapSettings { has_beams, ..filling(emitted, indirect, seed, replicate) };
+        let beams = settings.volume.beam_radius.map(|_| settings.volume.beam_length);
+        let filled = MapSettings { beams, ..filling(emitted, indirect, seed, replicate) };
         let maps = fill(scene, &filled, &NoProgress).unwrap();
         let mapper = Mapper::new(scene, &maps, settings);
         let mut picture = Layers::ZERO;

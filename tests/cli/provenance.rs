@@ -72,6 +72,7 @@ fn tables_say_what_they_were_made_with() {
         &["render", "fogbox", "-o", "never.exr", "--beam-radius", "0.1", "--beam-blur", "3d"],
         &["--beam-blur is 3d, which is about places; allowed of pictures: 1d, 2d"],
     );
+    refuses_naming(&["render", "fogbox", "-o", "never.exr", "--beam-length", "whole"], &["--beam-radius"]);
     // What would be ignored is refused, also where what it depends on is kept away by another flag.
     for (given, ignored) in [
         (&along, &["--beam-fluence"][..]),

@@ -333,7 +333,7 @@ fn report(has_room: bool) -> MapReport {
         global,
         caustic,
         volume,
-        has_beams: false,
+        beams: None,
         indirect: Indirect::Gathered,
         seed: 1,
         replicate: 0,

@@ -15,12 +15,13 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Treatment};
-use turbid::estimators::{BeamEstimator, BeamLength, Estimator, Gather, Kernel};
+use turbid::estimators::{BeamEstimator, Estimator, Gather, Kernel};
 use turbid::geometry::{Rectangle, Shape};
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::light::{Light, Section};
 use turbid::math::{FOUR_PI, Interval, Positive, Ray, exp, warp};
 use turbid::medium::Medium;
+use turbid::photons::beams::BeamLength;
 use turbid::photons::beams::{Beam, BeamKind, BeamMap};
 use turbid::photons::maps::{Indirect, fill};
 use turbid::rng::{Purpose, Stream};
@@ -428,7 +429,7 @@ fn of_beams(settings: Settings, radius: f64) -> Settings {
     Settings { volume: settings.volume.along_beams(radius), ..settings }
 }
 
-/// The mapper keeps its ledger by beams: a foggy room with a mirror and a ball of glass, in colour.
+/// The mapper keeps its ledger by beams of both lengths: a foggy room with a mirror and a ball of glass, in colour.
 #[test]
 fn a_room_with_glass_keeps_its_ledger() {
     let room = Room {
@@ -440,7 +441,11 @@ fn a_room_with_glass_keeps_its_ledger() {
         has_glass: true,
         has_water: false,
     };
-    layers_are_those_of_paths(&room, Indirect::Seen, &of_beams(settings(1), 0.05), 4000, 21);
+    let sampled = of_beams(settings(1), 0.05);
+    let whole = Settings { volume: sampled.volume.of_length(BeamLength::Whole), ..sampled };
+    for (read, seed) in [(sampled, 21), (whole, 23)] {
+        layers_are_those_of_paths(&room, Indirect::Seen, &read, 4000, seed);
+    }
 }
 
 /// Fog of albedo 1 with the same radiance from all sides is as bright everywhere, near its faces too.
@@ -453,26 +458,28 @@ fn a_furnace_of_fog() {
         vec![crate::support::scenes::isotropic(cube, turbid::light::Faces::Both)],
     );
     let settings = of_beams(settings(1), 0.3);
-    let mut moments = Moments::new();
-    for replicate in 0..64 {
-        let filling = crate::checks::ledger::filling(4000, Indirect::Seen, 2, replicate);
-        let filling = turbid::photons::maps::MapSettings { has_beams: true, ..filling };
-        let maps = fill(&scene, &filling, &NoProgress).unwrap();
-        assert!(maps.volume.is_none() && maps.beams.as_ref().is_some_and(|beams| beams.stored() > 4000));
-        let mapper = Mapper::new(&scene, &maps, &settings);
-        mapper.check_radii().unwrap();
-        let mut sum = 0.0;
-        for history in 0..50 {
-            let mut stream = Stream::new(2, Purpose::Paths, replicate, history);
-            let [y, z] = stream.pair().map(|u| 0.02 + 1.96 * u);
-            let ray = Ray::new(DVec3::new(0.4, y, z), DVec3::X);
-            sum += mapper.radiance(ray, None, 0, &mut stream).0.total()[1];
+    for length in BeamLength::ALL {
+        let mut moments = Moments::new();
+        for replicate in 0..64 {
+            let filling = crate::checks::ledger::filling(4000, Indirect::Seen, 2, replicate);
+            let filling = turbid::photons::maps::MapSettings { beams: Some(length), ..filling };
+            let maps = fill(&scene, &filling, &NoProgress).unwrap();
+            assert!(maps.volume.is_none() && maps.beams.as_ref().is_some_and(|beams| beams.stored() > 4000));
+            let mapper = Mapper::new(&scene, &maps, &settings);
+            mapper.check_radii().unwrap();
+            let mut sum = 0.0;
+            for history in 0..50 {
+                let mut stream = Stream::new(2, Purpose::Paths, replicate, history);
+                let [y, z] = stream.pair().map(|u| 0.02 + 1.96 * u);
+                let ray = Ray::new(DVec3::new(0.4, y, z), DVec3::X);
+                sum += mapper.radiance(ray, None, 0, &mut stream).0.total()[1];
+            }
+            moments.push(sum / 50.0 * PI);
+            let of_points = Mapper::new(&scene, &maps, &crate::checks::ledger::settings(1)).check_radii();
+            assert!(of_points.is_err(), "beams are no points");
         }
-        moments.push(sum / 50.0 * PI);
-        let of_points = Mapper::new(&scene, &maps, &crate::checks::ledger::settings(1)).check_radii();
-        assert!(of_points.is_err(), "beams are no points");
+        verdict::agrees(length.name(), &moments, (1.0, 1e-12), 0.1, 2);
     }
-    verdict::agrees("fog", &moments, (1.0, 1e-12), 0.1, 2);
 }
 
 /// Rays through many copies of a cell, either way, level and steep, from far outside it: found is what all copies, asked one by one,

@@ -34,7 +34,7 @@ fn maps(
         global: amount,
         caustic: amount,
         volume: amount,
-        has_beams: false,
+        beams: None,
         indirect,
         seed: 5,
         replicate,

@@ -41,7 +41,7 @@ fn settings(indirect: Indirect) -> MapSettings {
         global: amount,
         caustic: amount,
         volume: amount,
-        has_beams: false,
+        beams: None,
         indirect,
         seed: 1,
         replicate: 0,

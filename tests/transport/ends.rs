@@ -200,7 +200,7 @@ fn every_method_refuses_a_room_that_keeps_light() {
         global: amount,
         caustic: amount,
         volume: amount,
-        has_beams: false,
+        beams: None,
         indirect,
         seed: 1,
         replicate: 0,

@@ -41,7 +41,7 @@ fn by_map(
         global: Amount::Stored(surface as u64),
         caustic: Amount::Emitted(1),
         volume: Amount::Stored(volume as u64),
-        has_beams: false,
+        beams: None,
         indirect: Indirect::Seen,
         seed: 1,
         replicate,

@@ -19,6 +19,6 @@ pub fn filled(
     // Only a count that is still to be found would be read here.
     let [global, caustic, volume] = [emitted.global, emitted.caustic, emitted.volume].map(Amount::Emitted);
     let settings =
-        MapSettings { global, caustic, volume, has_beams: false, indirect: Indirect::Seen, seed, replicate };
+        MapSettings { global, caustic, volume, beams: None, indirect: Indirect::Seen, seed, replicate };
     Ok(fill_counted_by_importance(scene, &settings, emitted, importance, &NoProgress)?)
 }

@@ -415,7 +415,7 @@ fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_by_importance:
         global: amount,
         caustic: amount,
         volume: amount,
-        has_beams: false,
+        beams: None,
         indirect,
         seed: SEED,
         replicate: 0,

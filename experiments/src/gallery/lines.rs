@@ -9,6 +9,7 @@ use cpu_time::ProcessTime;
 use turbid::estimators::Gather;
 use turbid::integrators::mapper::{self, Mapper};
 use turbid::math::Positive;
+use turbid::photons::beams::BeamLength;
 use turbid::photons::maps::{self, Amount, MapSettings};
 use turbid::sensor::{Film, Method};
 use turbid::transport::{NoProgress, Progress};
@@ -73,7 +74,8 @@ fn settings(
     };
     let (volume, radius) = stored.of(lines);
     let (global, caustic) = (part(usual.global), part(usual.caustic));
-    let maps = MapSettings { global, caustic, volume, has_beams: stored == Stored::Beams, ..usual };
+    let beams = (stored == Stored::Beams).then_some(BeamLength::Sampled);
+    let maps = MapSettings { global, caustic, volume, beams, ..usual };
     let mut read = recipe::readout(picture, 1)?;
     let gathers = [&mut read.global.1, &mut read.caustic.1, &mut read.volume.gather];
     for (gather, radius) in gathers.into_iter().zip(radii) {
@@ -159,7 +161,10 @@ mod tests {
             for stored in Stored::ALL {
                 let of = |map| settings(picture, (&lines, stored), [0.1, 0.0, 0.2], 1, map).unwrap();
                 let ((maps, first), (others, later)) = (of(0), of(5));
-                assert_eq!((maps.has_beams, maps.replicate + 5), (stored == Stored::Beams, others.replicate));
+                assert_eq!(
+                    (maps.beams.is_some(), maps.replicate + 5),
+                    (stored == Stored::Beams, others.replicate)
+                );
                 let radius =
                     |s: &mapper::Settings| s.volume.ray_radius.or(s.volume.beam_radius).unwrap().get();
                 assert!(radius(&later) < radius(&first) && first.volume.reads_rays(), "{}", picture.name);

@@ -12,7 +12,7 @@ pub fn maps(picture: &Picture, factor: u64, seed: u64, replicate: u64) -> MapSet
         Amount::Stored(n) => Amount::Stored(n * factor),
     });
     let indirect = if picture.gather > 0 { Indirect::Gathered } else { Indirect::Seen };
-    MapSettings { global, caustic, volume, has_beams: false, indirect, seed, replicate }
+    MapSettings { global, caustic, volume, beams: None, indirect, seed, replicate }
 }
 
 /// How the maps are read: as in 1998, with this picture's numbers of photons; of maps with `factor` times the photons, with

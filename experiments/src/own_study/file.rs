@@ -6,9 +6,10 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use turbid::estimators::boundary::{Rejection, Treatment};
-use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
+use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel, RayEnds};
 use turbid::input::line_and_column;
 use turbid::math::Positive;
+use turbid::photons::beams::BeamLength;
 use turbid::scene::toml_message;
 
 /// A study as its file says it.

@@ -8,6 +8,7 @@ use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Estimator, Kernel};
 use turbid::integrators::Layer;
 use turbid::integrators::mapper::{LEAST_K, Mapper, Settings};
+use turbid::photons::beams::BeamLength;
 use turbid::photons::maps::{Amount, Indirect, MapSettings, Maps, fill};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Method, RadianceMaps, Streams};
@@ -138,16 +139,18 @@ impl Picture {
     ) -> turbid::Result<Maps> {
         let amount = Amount::Emitted(photons);
         let indirect = if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered };
-        let filled = |has_beams: bool| {
+        let filled = |beams: Option<BeamLength>| {
             let (global, caustic, volume) = (amount, amount, amount);
-            let settings = MapSettings { global, caustic, volume, has_beams, indirect, seed, replicate };
+            let settings = MapSettings { global, caustic, volume, beams, indirect, seed, replicate };
             fill(scene, &settings, &NoProgress)
         };
-        match RadianceMaps::of(estimators) {
+        let wanted = RadianceMaps::of(estimators);
+        let length = if wanted.whole_beams { BeamLength::Whole } else { BeamLength::Sampled };
+        match wanted {
             RadianceMaps { points: true, beams: true, .. } => {
-                Ok(Maps { beams: filled(true)?.beams, ..filled(false)? })
+                Ok(Maps { beams: filled(Some(length))?.beams, ..filled(None)? })
             }
-            RadianceMaps { beams, .. } => filled(beams),
+            RadianceMaps { beams, .. } => filled(beams.then_some(length)),
         }
     }
 

@@ -1,7 +1,8 @@
 //! Names of cases, as cells, predictions and results share them.
 
 use super::points::Point;
-use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, RayEnds};
+use turbid::estimators::{BeamBlur, Estimator, Gather, RayEnds};
+use turbid::photons::beams::BeamLength;
 
 /// Name of the experiment, in files and in random streams.
 pub const NAME: &str = "own";

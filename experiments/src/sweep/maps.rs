@@ -104,7 +104,7 @@ pub fn maps(
             global: amount,
             caustic: amount,
             volume: amount,
-            has_beams: false,
+            beams: None,
             indirect,
             seed,
             replicate: first,

@@ -167,13 +167,13 @@ pub fn break_even_at(case: &Measured, paths: &Paths, currency: Currency, error: 
 
 /// Rays of guided paths over those of paths that nothing leads, to the same error.
 pub fn guided_rays(guided: &Paths, paths: &Paths) -> Estimate {
-    let work =
-        |paths: &Paths| paths.variance.iter().copied().zip(paths.rays.iter().copied()).collect::<Vec<_>>();
     // Joining batches by number is a free choice: they share nothing.
-    let joined: Vec<_> = work(guided).into_iter().zip(work(paths)).collect();
+    let work = |paths: &Paths| paths.variance.iter().copied().zip(paths.rays.clone()).collect::<Vec<_>>();
+    let joined: Vec<[f64; 4]> =
+        work(guided).into_iter().zip(work(paths)).map(|(a, b)| [a.0, a.1, b.0, b.1]).collect();
     positive(&joined, |batches| {
-        let sum = |of: fn(&((f64, f64), (f64, f64))) -> f64| batches.iter().map(of).sum::<f64>();
-        sum(|b| b.0.0) * sum(|b| b.0.1) / (sum(|b| b.1.0) * sum(|b| b.1.1))
+        let sum = |part: usize| batches.iter().map(|batch| batch[part]).sum::<f64>();
+        sum(0) * sum(1) / (sum(2) * sum(3))
     })
 }
 

@@ -215,7 +215,7 @@ impl Map {
 
     /// The photons of the maps asked for, each with the number that its map's pass emitted.
     fn in_maps(&self, scene: &Scene, camera: Option<&Camera>) -> anyhow::Result<Vec<(Photon, u64)>> {
-        let settings = self.amounts.settings(Indirect::Gathered, false, self.seed, 0);
+        let settings = self.amounts.settings(Indirect::Gathered, None, self.seed, 0);
         let importance = match camera {
             Some(camera) => self.amounts.importance(scene, camera, &settings)?,
             None => None,

@@ -5,7 +5,7 @@ use super::learn::learn;
 use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::options;
-use super::picture::{BlurName, BoundaryName, RejectName, beam_radius, ray_k, ray_radius};
+use super::picture::{BlurName, BoundaryName, LengthName, RejectName, beam_radius, ray_k, ray_radius};
 use super::progress::Bar;
 use super::revision::revision;
 use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead, whole};
@@ -13,7 +13,7 @@ use anyhow::{Context, bail};
 use clap::{ArgMatches, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
+use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel, RayEnds};
 use turbid::geometry::Voxels;
 use turbid::integrators::Guides;
 use turbid::math::{FOUR_PI, Positive};
@@ -182,15 +182,6 @@ enum With {
     Photons,
     /// Light tracing: photons that are scored as they pass, none stored.
     Light,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum LengthName {
-    /// As far as the photon flew.
-    Sampled,
-    /// To the end of each medium, with what passes, while the photon goes on from where it collided: less noise a photon, and more
-    /// beams about every ray. Not for media that vary.
-    Whole,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -454,10 +445,7 @@ impl Measure {
         let (has_planes, is_progressive) = (self.planes, self.progressive);
         let ray_k = ray_k(self.ray_k);
         let beam_blur = self.beam_blur.map_or(BeamBlur::default(), BlurName::blur);
-        let beam_length = match self.beam_length {
-            Some(LengthName::Whole) => BeamLength::Whole,
-            Some(LengthName::Sampled) | None => BeamLength::Sampled,
-        };
+        let beam_length = self.beam_length.map(LengthName::length).unwrap_or_default();
         let ray_ends = match self.ray_ends {
             Some(EndsName::Own) => RayEnds::Own,
             Some(EndsName::Cut) | None => RayEnds::Cut,

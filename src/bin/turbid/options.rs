@@ -117,6 +117,7 @@ pub const RENDER: Table = &[
     ("ray_k", PHOTONS),
     ("beam_radius", PHOTONS),
     ("beam_blur", PHOTONS),
+    ("beam_length", PHOTONS),
     ("gather_rays", PHOTONS),
     ("near", PHOTONS),
     ("step", PHOTONS),

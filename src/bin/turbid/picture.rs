@@ -13,6 +13,7 @@ use turbid::integrators::mapper::{LEAST_K, Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
 use turbid::output::Curve;
+use turbid::photons::beams::BeamLength;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Emitted, Forecast, Indirect, MapSettings, forecast};
 use turbid::scene::{Camera, Scene};
@@ -211,9 +212,15 @@ impl Photons {
     }
 
     /// Settings of the maps of one repetition.
-    pub fn settings(&self, indirect: Indirect, has_beams: bool, seed: u64, replicate: u64) -> MapSettings {
+    pub fn settings(
+        &self,
+        indirect: Indirect,
+        beams: Option<BeamLength>,
+        seed: u64,
+        replicate: u64,
+    ) -> MapSettings {
         let Photons { global, caustic, volume, .. } = *self;
-        MapSettings { global, caustic, volume, has_beams, indirect, seed, replicate }
+        MapSettings { global, caustic, volume, beams, indirect, seed, replicate }
     }
 }
 
@@ -277,6 +284,9 @@ pub struct Readout {
     /// In how many dimensions beams are blurred, 1d or 2d [default: 1d].
     #[arg(long, value_enum, requires = "beam_radius", conflicts_with_all = ["reject", "ray_radius"])]
     beam_blur: Option<BlurName>,
+    /// How far beams go [default: sampled].
+    #[arg(long, value_enum, requires = "beam_radius", conflicts_with_all = ["reject", "ray_radius"])]
+    beam_length: Option<LengthName>,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
     #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
     gather_rays: u32,
@@ -371,6 +381,25 @@ impl BlurName {
     }
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+pub enum LengthName {
+    /// As far as the photon flew.
+    Sampled,
+    /// To the end of each medium, with what passes, while the photon goes on from where it collided: less noise a photon, and more
+    /// beams about every ray.
+    Whole,
+}
+
+impl LengthName {
+    /// The length of this name.
+    pub fn length(self) -> BeamLength {
+        match self {
+            LengthName::Sampled => BeamLength::Sampled,
+            LengthName::Whole => BeamLength::Whole,
+        }
+    }
+}
+
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum EdgesName {
     /// Nothing: up to half is lost at an edge.
@@ -440,9 +469,9 @@ impl Readout {
         self.ray_k.is_some()
     }
 
-    /// Whether the volume map is of beams.
-    pub fn has_beams(&self) -> bool {
-        self.beam_radius.is_some()
+    /// How far the beams of the volume map go, if it is of beams.
+    pub fn beams(&self) -> Option<BeamLength> {
+        self.beam_radius.map(|_| self.beam_length.map(LengthName::length).unwrap_or_default())
     }
 
     /// Whether steps that depend on what is read are asked for.
@@ -492,6 +521,7 @@ impl Readout {
         settings.volume.ray_k = ray_k(self.ray_k);
         settings.volume.beam_radius = beam_radius(self.beam_radius)?;
         settings.volume.beam_blur = self.beam_blur.map_or(BeamBlur::default(), BlurName::blur);
+        settings.volume.beam_length = self.beams().unwrap_or_default();
         if settings.volume.beam_blur == BeamBlur::ThreeD {
             return Err(anyhow!("--beam-blur is 3d, which is about places; allowed of pictures: 1d, 2d"));
         }

@@ -8,7 +8,7 @@ use turbid::photons::maps::{Amount, Indirect, MapSettings};
 
 /// What maps are filled with.
 pub fn map_settings(settings: &MapSettings) -> Value {
-    let MapSettings { global, caustic, volume, has_beams: _, indirect, seed, replicate: _ } = settings;
+    let MapSettings { global, caustic, volume, beams: _, indirect, seed, replicate: _ } = settings;
     let amount = |amount: &Amount| match amount {
         Amount::Stored(count) => json!({ "stored": count }),
         Amount::Emitted(count) => json!({ "emitted": count }),
@@ -42,6 +42,7 @@ pub fn mapper_settings(settings: &Settings) -> Value {
     if let Some(radius) = volume.beam_radius {
         of_volume["beam_radius"] = json!(radius.get());
         of_volume["beam_blur"] = json!(volume.beam_blur.name());
+        of_volume["beam_length"] = json!(volume.beam_length.name());
     }
     json!({
         "global": read(*global),

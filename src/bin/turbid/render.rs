@@ -260,9 +260,9 @@ impl Render {
                 Ok((self.fill(film, stages, left, &Method::Light(&scene), (&camera, streams))?, None))
             }),
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
-                let (indirect, has_beams) = (self.readout.indirect(), self.readout.has_beams());
+                let (indirect, beams) = (self.readout.indirect(), self.readout.beams());
                 let settings_of_maps =
-                    self.photons.settings(indirect, has_beams, streams.seed, streams.replicate);
+                    self.photons.settings(indirect, beams, streams.seed, streams.replicate);
                 let importance =
                     stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
                 let importance = importance.as_ref();
@@ -427,7 +427,7 @@ impl Render {
         camera: &Camera,
         sequence: &Sequence<'_>,
     ) -> serde_json::Value {
-        let maps = self.photons.settings(self.readout.indirect(), self.readout.has_beams(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), self.readout.beams(), self.seed, 0);
         serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
             "plan": if self.plan == PlanName::Full { "full" } else { "auto" },
@@ -565,7 +565,7 @@ impl Render {
     /// All that the picture was made from: no path, no time.
     fn provenance(&self, scene_text: &str, made: &Made, exposure: f64) -> anyhow::Result<serde_json::Value> {
         let by_photons = self.with == With::Photons;
-        let maps = self.photons.settings(self.readout.indirect(), self.readout.has_beams(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), self.readout.beams(), self.seed, 0);
         // Of a progressive picture a run may know some of the maps alone.
         let filled = (!self.progressive.is_asked_for)
             .then(|| made.maps.iter().map(|made| made.filled).collect::<Vec<[Option<Filled>; 3]>>());

@@ -2,6 +2,7 @@
 
 use super::settings::{Indirect, MapSettings};
 use crate::faults::{Fault, planted};
+use crate::photons::beams::BeamLength;
 use crate::photons::importance::Importance;
 use crate::photons::{Emitter, Flags, Histories, Photon, Run, Storage};
 use crate::scene::Scene;
@@ -58,13 +59,13 @@ pub(super) struct Classes {
     pub(super) global: u64,
     /// Histories that store volume photons.
     pub(super) volume: u64,
-    /// Whether they store their flights instead.
-    pub(super) has_beams: bool,
+    /// How far their flights go, which they store instead, if they do.
+    pub(super) beams: Option<BeamLength>,
 }
 
 impl Storage for Classes {
     fn in_medium(&self, history: u64, photon: &Photon) -> bool {
-        !self.has_beams && self.is_volume(history, photon.flags)
+        self.beams.is_none() && self.is_volume(history, photon.flags)
     }
 
     fn on_surface(&self, history: u64, photon: &Photon) -> bool {
@@ -76,11 +77,15 @@ impl Storage for Classes {
     }
 
     fn has_beams(&self) -> bool {
-        self.has_beams && self.class != Class::Caustic && self.volume > 0
+        self.beams.is_some() && self.class != Class::Caustic && self.volume > 0
+    }
+
+    fn has_whole_beams(&self) -> bool {
+        self.beams == Some(BeamLength::Whole)
     }
 
     fn on_flight(&self, history: u64, _order: u32, flags: Flags) -> bool {
-        self.has_beams && self.is_volume(history, flags)
+        self.beams.is_some() && self.is_volume(history, flags)
     }
 }
 

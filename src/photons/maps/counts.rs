@@ -115,7 +115,7 @@ fn piloted(
     };
     let pilot = |class: Class, histories: u64| {
         let run = class.run(scene, &emitters, importance, settings, histories);
-        let store = Classes { class, global: histories, volume: histories, has_beams: settings.has_beams };
+        let store = Classes { class, global: histories, volume: histories, beams: settings.beams };
         Run { purpose: Purpose::Pilot, is_pilot: true, ..run }.pass(&store, &NoProgress)
     };
     // Where there are more threads than blocks of the pilot, some of them wait.
@@ -129,7 +129,7 @@ fn piloted(
     let lengths = [length(&[0, 1]), length(&[2])];
     if lengths[0] > 0 {
         let pass = pilot(Class::Main(settings.indirect), lengths[0])?;
-        let met = if settings.has_beams { pass.met_beams } else { pass.met[1] };
+        let met = if settings.beams.is_some() { pass.met_beams } else { pass.met[1] };
         (rates[0], rates[1]) = (pass.met[0] as f64, met as f64);
         seconds[0] = a_history(&pass, lengths[0]);
     }
@@ -160,7 +160,7 @@ fn piloted(
     let threads = rayon::current_num_threads() as f64;
     let built = BUILD_SECONDS * stored.iter().sum::<f64>() / threads;
     let seconds = seconds[0] * main + seconds[1] * emitted.caustic as f64 + built;
-    Ok(Forecast { emitted, stored, has_beams: settings.has_beams, seconds })
+    Ok(Forecast { emitted, stored, has_beams: settings.beams.is_some(), seconds })
 }
 
 /// Which maps a scene needs.

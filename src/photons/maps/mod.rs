@@ -171,8 +171,8 @@ pub fn fill_part(
         map
     };
     let shot = |purpose: Purpose, class: Class, [global, volume]: [u64; 2]| -> Result<Pass> {
-        let (count, has_beams) = (global.max(volume), settings.has_beams);
-        let store = Classes { class, global, volume, has_beams };
+        let (count, beams) = (global.max(volume), settings.beams);
+        let store = Classes { class, global, volume, beams };
         let histories = part.histories(count);
         progress.stage("emission", histories.end - histories.start);
         let run = Run { purpose, part, ..class.run(scene, &emitters, importance, settings, count) };
@@ -187,7 +187,7 @@ pub fn fill_part(
     };
     let main = shot(Purpose::Photons, Class::Main(settings.indirect), [global, volume])?;
     let surfaces = build(main.surfaces, global)?;
-    let media = if settings.has_beams { None } else { build(main.media, volume)? };
+    let media = if settings.beams.is_some() { None } else { build(main.media, volume)? };
     // Caustic photons of histories that the first pass has run too would be the same photons.
     let pass = shot(Purpose::Caustics, Class::Caustic, [caustic, 0])?;
     let focused = build(pass.surfaces, caustic)?;
@@ -198,7 +198,7 @@ pub fn fill_part(
         report.projection_cells += emitter.projection_cells();
         report.projected = emitter.kept();
     }
-    let beams = match settings.has_beams && volume > 0 {
+    let beams = match settings.beams.is_some() && volume > 0 {
         true => {
             let start = Instant::now();
             let side = scene.periodic_cell().map(|cell| cell.side);

@@ -1,5 +1,7 @@
 //! What the maps are filled with.
 
+use crate::photons::beams::BeamLength;
+
 /// Histories of the pilot that says how many photons to emit where a number of stored ones is asked for.
 pub const PILOT: u64 = 10_000;
 
@@ -41,8 +43,8 @@ pub struct MapSettings {
     pub caustic: Amount,
     /// Photons of the volume map, used where the scene has media.
     pub volume: Amount,
-    /// Whether flights, as beams, take the place of photons in the volume map, and are counted there.
-    pub has_beams: bool,
+    /// How far flights go that, as beams, take the place of photons in the volume map, and are counted there; none for photons.
+    pub beams: Option<BeamLength>,
     /// Where the global map will be read.
     pub indirect: Indirect,
     /// Seed of the whole computation.
