@@ -98,8 +98,8 @@ pub enum Fault {
     TrackStretched,
     /// A photon that is split shares its weight among as many as there are mostly, not on average.
     WindowUnfair,
-    /// A path that learned directions have made too heavy leaves all of its weight to each of its parts.
-    HeavyKept,
+    /// A path that learned directions have made too heavy loses one of its parts.
+    PartLost,
     /// The noise that is advised forgets that photons of one history gather.
     ClustersForgotten,
     /// The variance of the k nearest is that of k + 1.
@@ -194,7 +194,7 @@ impl Fault {
         Fault::PieceStretched,
         Fault::TrackStretched,
         Fault::WindowUnfair,
-        Fault::HeavyKept,
+        Fault::PartLost,
         Fault::ClustersForgotten,
         Fault::FreedomOfThree,
         Fault::VarianceOfRed,

@@ -229,14 +229,15 @@ fn results_stay_where_a_later_study_is_refused() {
     };
     picture("0.3");
     study(at, &["mine.toml", "--out", "picture"]).assert().success();
-    let before = results(at, "picture");
+    let predicted = || std::fs::read(at.join("picture/predictions.csv")).unwrap();
+    let before = (results(at, "picture"), predicted());
     picture("1e-9");
     let said = refused(at, &["mine.toml", "--out", "picture"]);
     assert!(
         said.contains("mine.toml: cell scene000") && said.contains("a gather radius of 1e-9 L"),
         "{said}"
     );
-    assert!(before == results(at, "picture"));
+    assert!(before == (results(at, "picture"), predicted()));
 }
 
 /// A scene of Mitsuba, with a mesh beside it, is studied as the scene file that is made of it.

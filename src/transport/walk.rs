@@ -211,10 +211,11 @@ fn fly<V: Visitor>(
         let (weight, heaviest) = (walker.weight.max(), visitor.heaviest());
         if weight > heaviest && split.count < MOST_SPLIT {
             let copies = (weight / heaviest).ceil().min(MOST_SPLIT as f64) as usize;
-            walker.weight *= if planted(Fault::HeavyKept) { 1.0 } else { 1.0 / copies as f64 };
+            walker.weight *= 1.0 / copies as f64;
             split.count += copies - 1;
+            let others = if planted(Fault::PartLost) { copies - 2 } else { copies - 1 };
             let waiting = || Waiting { walker: *walker, roulette, hit, flown };
-            split.waiting.extend(std::iter::repeat_with(waiting).take(copies - 1));
+            split.waiting.extend(std::iter::repeat_with(waiting).take(others));
         }
         return Some(free_flight(scene, &walker.ray, end, walker.interior, walker.weight, forced, stream));
     };

@@ -161,11 +161,9 @@ const fn inside(fault: Fault) -> Row {
                 directions::guided_paths_find_as_much()
             })
         }
-        Fault::HeavyKept => {
-            ("a heavy path's weight left to each of its parts", "guided_paths_stay_light", |_| {
-                directions::guided_paths_stay_light()
-            })
-        }
+        Fault::PartLost => ("one part of a heavy path lost", "guided_paths_stay_light", |_| {
+            directions::guided_paths_stay_light()
+        }),
         Fault::RadianceUnscaled => {
             ("radiance not scaled by a refraction", "a_cavity_is_brighter_by_the_squared_index", |_| {
                 glass::a_cavity_is_brighter_by_the_squared_index()
@@ -453,7 +451,7 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::PieceStretched),
     inside(Fault::TrackStretched),
     inside(Fault::WindowUnfair),
-    inside(Fault::HeavyKept),
+    inside(Fault::PartLost),
     inside(Fault::SharedForOne),
     inside(Fault::LobeForgotten),
     inside(Fault::ClustersForgotten),

@@ -288,7 +288,12 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
             names.join(", ")
         );
     }
-    write_if_changed(&settings.out.join("predictions.csv"), &prediction_table(&experiments, &predictions)?)?;
+    let predicted = prediction_table(&experiments, &predictions)?;
+    let write_predicted = || write_if_changed(&settings.out.join("predictions.csv"), &predicted);
+    // Those of a question stand beside its cells until it is answered: what was concluded before stays whole if it is not.
+    if settings.question.is_none() {
+        write_predicted()?;
+    }
     watch.say(&opening(study.name, settings, total, missing, predictions.iter().map(Vec::len).sum()));
     let start = Instant::now();
     let done = measure(tasks, &manifest, settings, watch)?;
@@ -356,6 +361,7 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
     provenance.late_predictions = late_predictions;
     let provenance = keep_or_write(&settings.out.join("provenance.json"), provenance)?;
 
+    write_predicted()?;
     write_results(&settings.out, &sections)?;
     let timing: Vec<Seconds> =
         seconds.iter().flat_map(|(experiment, cell)| Seconds::of_cell(experiment, cell)).collect();
