@@ -24,6 +24,10 @@ LAYERS = ["emission", "direct", "caustic", "indirect", "single", "multiple"]
             ["--samples", 1, "--gather-rays", 0, "--radius", 0.2, "--step", 0.3, "--step-rule", "middle", "--adapt", 0, "--kernel", "cone"],
             dict(samples=1, gather_rays=0, radius=0.2, step=0.3, step_rule="middle", adapt=0, kernel="cone"),
         ),
+        (
+            ["--samples", 1, "--gather-rays", 0, "--beam-radius", 0.1, "--beam-blur", "2d", "--beam-length", "whole"],
+            dict(samples=1, gather_rays=0, beam_radius=0.1, beam_blur="2d", beam_length="whole"),
+        ),
     ],
 )
 def test_the_same_picture_as_the_program(words, more, turbid_program, tmp_path):
@@ -93,6 +97,8 @@ def test_wrong_settings():
     assert told(step_rule="far").startswith("step_rule is 'far'; allowed: near-end, middle, integrated")
     assert told(near=-1).startswith("fogbox: near is -1") and told(adapt=float("nan")).startswith("fogbox: adapt is NaN")
     assert told(step=1e-12).startswith("fogbox: step is ") and told(step=-1.0).startswith("fogbox: step is -1")
+    assert told(beam_length="whole").endswith("allowed: with beam_radius")
+    assert told(beam_length="long", beam_radius=1) == "beam_length is 'long'; allowed: sampled, whole"
     assert told(edges="soft").startswith("edges is 'soft'") and told(kernel="round").startswith("kernel is 'round'")
     assert told(width=16384, height=16384).startswith("fogbox: width, height: camera.width times camera.height")
     assert "of memory" in told(volume="emit:1e12", width=8)

@@ -1,5 +1,6 @@
 """Studies: against the program byte by byte, in every form, in parts, and as guests of Python."""
 
+import copy
 import gc
 import signal
 import sys
@@ -184,6 +185,10 @@ def test_temporary_folders_last_as_long_as_what_was_found():
     study = turbid.study(dict(AS_DICT, photons=[500], estimators=[dict(radius=0.2)]))
     folder = study.out
     assert study.report.is_file()
+    for copied in (copy.copy, copy.deepcopy):
+        study = copied(study)
+        gc.collect()
+        assert study.report.is_file()
     del study
     gc.collect()
     assert not folder.exists()

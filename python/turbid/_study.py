@@ -44,11 +44,21 @@ def _table(path: pathlib.Path) -> np.ndarray:
     return table
 
 
+class _Held:
+    """A folder that is removed with this object: copies of what was found share it."""
+
+    def __init__(self, folder: str) -> None:
+        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "_Held":
+        return self
+
+
 class Study:
     """What a study found."""
 
     out: Optional[pathlib.Path]
-    """Folder of report, tables, figures and cells; None of a dry run. A temporary one is removed with this object."""
+    """Folder of report, tables, figures and cells; None of a dry run. A temporary one is removed with this object and its copies."""
     report: Optional[pathlib.Path]
     """The report; None of a part or a dry run, which conclude nothing."""
     results: Optional[np.ndarray]
@@ -65,6 +75,7 @@ class Study:
         self, out: Optional[pathlib.Path], report: Optional[_Path], summary: list[str], measured: int
     ) -> None:
         self.out, self.summary, self.measured = out, summary, measured
+        self._held: Optional[_Held] = None
         self.report = None if report is None else pathlib.Path(report)
         is_whole = out is not None and report is not None
         self.results = _table(out / "results.csv") if is_whole else None
@@ -157,5 +168,5 @@ def study(
     except BaseException:
         shutil.rmtree(temporary, ignore_errors=True)
         raise
-    weakref.finalize(found, shutil.rmtree, temporary, ignore_errors=True)
+    found._held = _Held(temporary)
     return found
