@@ -26,6 +26,20 @@ pub fn kernel(argument: &str, word: &str) -> PyResult<Kernel> {
     chosen(argument, word, &Kernel::ALL.map(|kernel| (kernel.name(), kernel)))
 }
 
+/// That estimates about whole rays know a treatment.
+///
+/// # Errors
+/// A treatment of balls
+pub fn check_about_rays(treatment: Treatment) -> anyhow::Result<()> {
+    match treatment {
+        Treatment::None | Treatment::Clipped => Ok(()),
+        Treatment::Reflection | Treatment::LocalLinear => Err(anyhow::anyhow!(
+            "boundary is '{}', of balls; allowed of rays that are read as a whole: none, clipped",
+            treatment.name().replace(' ', "-")
+        )),
+    }
+}
+
 /// In how many dimensions beams are blurred.
 ///
 /// # Errors

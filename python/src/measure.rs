@@ -1,7 +1,7 @@
 //! The sensors of a scene, by paths, bidirectional paths, photons or light tracing.
 
 use crate::arrays::doubles;
-use crate::choices::{beam_blur, beam_length, chosen, kernel, ray_ends, treatment};
+use crate::choices::{beam_blur, beam_length, check_about_rays, chosen, kernel, ray_ends, treatment};
 use crate::error::refuse;
 use crate::render::learn;
 use crate::scene::Given;
@@ -18,7 +18,7 @@ use turbid::math::Positive;
 use turbid::memory;
 use turbid::photons::Ledger;
 use turbid::photons::beams::BeamLength;
-use turbid::scene::{Binned, Orders, Scene, Space};
+use turbid::scene::{Binned, Orders, Quantity, Scene, Sensor, Space};
 use turbid::sensor::{
     Measurement, PathSettings, PhotonSettings, Streams, TallySettings, by_bidirectional_paths,
     by_guided_paths, by_photons_in_passes, by_tallies, check_paths, forecast, row_bytes, tally_bytes,
@@ -183,6 +183,20 @@ impl Request {
             return Err(anyhow!(
                 "progressive shrinks radii, and takes the k nearest photons as they are; allowed: with radius, ray_radius or beam_radius"
             ));
+        }
+        let is_of_balls = |s: &Sensor| {
+            matches!(s.quantity, Quantity::Fluence(_) | Quantity::Binned(Binned::Fluence { .. }))
+        };
+        let has_balls = !beam_fluence && scene.sensors().iter().any(is_of_balls)
+            || (ray_radius, beam_radius) == (None, None);
+        if !has_balls {
+            check_about_rays(self.treatment)?;
+            if k.is_some() || max_radius.is_some() {
+                return Err(anyhow!(
+                    "k and max_radius are of balls, and no sensor is read from one; allowed: with sensors of fluence, or without ray_radius \
+                     and beam_radius"
+                ));
+            }
         }
         let estimator = Estimator::new(self.kernel, gather).treated(self.treatment);
         let settings = PhotonSettings {

@@ -1,7 +1,7 @@
 //! How maps are filled and read where nothing else is asked for: the choices of `turbid render`, number by number, so that the
 //! same seed makes the same picture.
 
-use crate::choices::{beam_blur, beam_length, chosen, kernel, step_rule, treatment};
+use crate::choices::{beam_blur, beam_length, check_about_rays, chosen, kernel, step_rule, treatment};
 use crate::error::refuse;
 use anyhow::{Context, Result, anyhow};
 use pyo3::prelude::*;
@@ -176,6 +176,12 @@ impl Readout {
             beam_radius.map(|radius| Positive::new("beam_radius", radius)).transpose()?;
         if ray_radius.is_some() && beam_radius.is_some() {
             return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
+        }
+        if settings.volume.reads_rays() {
+            check_about_rays(self.treatment)?;
+            if self.options.volume_k.is_some() {
+                return Err(anyhow!("volume_k is of balls; allowed: without ray_radius and beam_radius"));
+            }
         }
         settings.volume.beam_blur = self.blur;
         settings.volume.beam_length = self.length;

@@ -99,6 +99,8 @@ def test_wrong_settings():
     assert told(step=1e-12).startswith("fogbox: step is ") and told(step=-1.0).startswith("fogbox: step is -1")
     assert told(beam_length="whole").endswith("allowed: with beam_radius")
     assert told(beam_length="long", beam_radius=1) == "beam_length is 'long'; allowed: sampled, whole"
+    assert told(beam_radius=1, boundary="reflection").endswith("of balls; allowed of rays that are read as a whole: none, clipped")
+    assert told(ray_radius=1, volume_k=20).endswith("volume_k is of balls; allowed: without ray_radius and beam_radius")
     assert told(edges="soft").startswith("edges is 'soft'") and told(kernel="round").startswith("kernel is 'round'")
     assert told(width=16384, height=16384).startswith("fogbox: width, height: camera.width times camera.height")
     assert "of memory" in told(volume="emit:1e12", width=8)

@@ -82,7 +82,7 @@ pub(super) struct PathVisitor<'a> {
     windowed: Option<Windowed<'a>>,
     /// Where light comes from.
     directions: Option<&'a Directions>,
-    /// The weight above which it is split.
+    /// The weight above which it is split, in those that roulette begins at.
     heaviest: f64,
     /// Orders above which light is left out of lights that do not fill space, if it is: of those that rays meet, and of delta lights.
     joined_above: Option<[u32; 2]>,
@@ -549,7 +549,7 @@ fn follow<'a>(mut visitor: PathVisitor<'a>, start: Walker, guides: Guides<'a>, s
     visitor.windowed = guides.windows.map(|windows| Windowed::new(windows, scene, place, start.weight));
     if let Some(directions) = guides.directions {
         visitor.directions = Some(directions);
-        visitor.heaviest = HEAVIEST * start.weight.max();
+        visitor.heaviest = HEAVIEST / ROULETTE;
     }
     walk(scene, start, roulette, limit, stream, &mut visitor);
     visitor.rays

@@ -370,9 +370,10 @@ impl<'a> Run<'a> {
         }
         pass.report.time = start.elapsed();
         if pass.overlong > 0 {
+            let larger = if pass.period.is_some() { ", a larger cell" } else { "" };
             return Err(Error::Scene(format!(
-                "{} photons fly on without end, or across more than {MOST_CELLS} periodic cells, and cannot be stored as beams or planes; \
-                 allowed: points along rays (a ray radius), a larger cell",
+                "photons that fly on without end, or across more than {MOST_CELLS} periodic cells, cannot be stored as beams or planes, and {} \
+                 of those sent out do; allowed: points along rays (a ray radius){larger}",
                 pass.overlong
             )));
         }

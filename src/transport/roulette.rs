@@ -34,6 +34,15 @@ impl Roulette {
         }
     }
 
+    /// The weight that is so many times as large as the one that paths begin to play at where no direction was learned; no finite one
+    /// for photons.
+    pub fn times(self, factor: f64) -> f64 {
+        match self {
+            Roulette::Analog => f64::INFINITY,
+            Roulette::Below { threshold, .. } => threshold * factor,
+        }
+    }
+
     /// The same game behind an event whose direction multiplied the weight by this; by 1 where it was not learned.
     pub fn led(self, led: f64) -> Self {
         match self {

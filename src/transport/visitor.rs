@@ -94,8 +94,8 @@ pub trait Visitor {
         None
     }
 
-    /// The weight above which a history flies on in equal parts; none for most. What directions were learned may make weights grow at
-    /// each event, without a bound.
+    /// The weight, in those that roulette begins at, above which a history flies on in equal parts; infinite for most. Learned directions
+    /// may make weights grow at each event, without a bound.
     #[inline(always)]
     fn heaviest(&self) -> f64 {
         f64::INFINITY

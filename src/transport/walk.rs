@@ -208,7 +208,7 @@ fn fly<V: Visitor>(
     visitor: &V,
 ) -> Option<Flight> {
     let Some(windowed) = visitor.windowed() else {
-        let (weight, heaviest) = (walker.weight.max(), visitor.heaviest());
+        let (weight, heaviest) = (walker.weight.max(), roulette.times(visitor.heaviest()));
         if weight > heaviest && split.count < MOST_SPLIT {
             let copies = (weight / heaviest).ceil().min(MOST_SPLIT as f64) as usize;
             walker.weight *= 1.0 / copies as f64;

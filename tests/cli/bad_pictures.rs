@@ -71,7 +71,7 @@ fn sizes_and_numbers_out_of_range() {
     refuse(&["--near", "-1"], &["--near is -1; allowed: finite and at least 0"]);
     refuse(&["--step", "0"], &["--step is 0; allowed: finite and above 0"]);
     refuse(&["--step", "1e-12"], &["--step is", "allowed: at least a millionth of the scene"]);
-    refuse(&["--exposure", "1e9"], &["--exposure is", "allowed: -100 to 100 stops"]);
+    refuse(&["--exposure", "1e9"], &["--exposure is", "allowed: -1000 to 1000 stops"]);
     refuse(&["--tone", "film"], &["--tone", "allowed: soft, clip"]);
     refuse(&["--boundary", "open"], &["--boundary", "allowed: none, clipped"]);
     refuse(&["--reject", "all"], &["--reject", "allowed: off, facing"]);

@@ -72,7 +72,17 @@ fn tables_say_what_they_were_made_with() {
         &["render", "fogbox", "-o", "never.exr", "--beam-radius", "0.1", "--beam-blur", "3d"],
         &["--beam-blur is 3d, which is about places; allowed of pictures: 1d, 2d"],
     );
-    refuses_naming(&["render", "fogbox", "-o", "never.exr", "--beam-length", "whole"], &["--beam-radius"]);
+    let never = ["render", "fogbox", "-o", "never.exr"];
+    refuses_naming(&[&never[..], &["--beam-length", "whole"]].concat(), &["--beam-radius"]);
+    // What is about balls alone is refused where rays are read as a whole.
+    for about in [["--beam-radius", "0.1"], ["--ray-radius", "0.1"]] {
+        refuses_naming(&[&never[..], &about, &["--volume-k", "20"]].concat(), &["--volume-k"]);
+        let treated = [&never[..], &about, &["--boundary", "reflection"]].concat();
+        refuses_naming(&treated, &["--boundary is reflection, of balls", "none, clipped"]);
+        for of_balls in [&["--k", "20"][..], &["--boundary", "local-linear"]] {
+            refuses_naming(&[&rays[..], &about, of_balls].concat(), &[of_balls[0], "of balls"]);
+        }
+    }
     // What would be ignored is refused, also where what it depends on is kept away by another flag.
     for (given, ignored) in [
         (&along, &["--beam-fluence"][..]),

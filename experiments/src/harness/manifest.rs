@@ -47,8 +47,17 @@ impl Manifest {
             for own in own {
                 std::fs::remove_dir_all(&own).with_context(|| format!("cannot empty {}", own.display()))?;
             }
-        } else if let Some(reason) = earlier.flatten().and_then(|earlier| self.refusal(&earlier, settings)) {
-            watch.say(&reason);
+        } else if let Some(earlier) = earlier.flatten() {
+            // Of many parts one asked for by mistake would replace what the others measured.
+            ensure!(
+                settings.part.is_none() || earlier.settings == self.settings,
+                "{} holds cells of other settings ({}); allowed for a part: another --out, or --fresh",
+                settings.out.display(),
+                earlier.settings
+            );
+            if let Some(reason) = self.refusal(&earlier, settings) {
+                watch.say(&reason);
+            }
         }
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
         write_atomically(&path, |out| write_json(out, self))?;

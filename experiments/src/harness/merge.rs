@@ -15,10 +15,23 @@ pub(super) struct Expected<'a> {
     pub cells: Vec<&'a CellId>,
 }
 
+/// That a folder can be merged.
+///
+/// # Errors
+/// A folder without cells
+pub(super) fn check_mergeable(folder: &Path) -> anyhow::Result<()> {
+    ensure!(
+        folder.join("cells").is_dir(),
+        "--merge {}: it has no cells; allowed: the --out folder of a part",
+        folder.display()
+    );
+    Ok(())
+}
+
 /// Copies the cells of some folders of parts to another, where they are one study's.
 ///
 /// # Errors
-/// A folder without cells; a cell of other settings or of another build (unless `--reuse-cells`), or that is broken; one that two
+/// A cell of other settings or of another build (unless `--reuse-cells`), or that is broken; one that two
 /// folders have differently
 pub(super) fn collect(
     folders: &[PathBuf],
@@ -29,11 +42,6 @@ pub(super) fn collect(
 ) -> anyhow::Result<()> {
     for folder in folders {
         let from = folder.join("cells");
-        ensure!(
-            from.is_dir(),
-            "--merge {}: it has no cells; allowed: the --out folder of a part",
-            folder.display()
-        );
         if is_same(&from, into) {
             continue;
         }

@@ -4,7 +4,7 @@ use super::group::Measure;
 use super::lock;
 use super::manifest::Manifest;
 use super::measure::{Task, cell_path, measure};
-use super::merge::{Expected, collect};
+use super::merge::{Expected, check_mergeable, collect};
 use super::outputs::{
     AnswerRecord, Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results,
 };
@@ -187,7 +187,7 @@ pub fn main_with(
                 print(|out| {
                     writeln!(
                         out,
-                        "part {}: {measured} cells measured; --merge {folder} concludes",
+                        "part {}: {measured} cells measured in {folder}; --merge with the folders of all parts concludes",
                         part.words()
                     )
                 })?;
@@ -215,6 +215,8 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
 /// Those of [`run`]; `turbid::Error::Cancelled` if it was ended
 pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> anyhow::Result<Outcome> {
     let experiments = selected(study.experiments, &settings.only)?;
+    // Before a folder of its own is made.
+    settings.merge.iter().try_for_each(|folder| check_mergeable(folder))?;
     let _held = lock::hold(&settings.out, settings.part, watch)?;
     let planned: Vec<anyhow::Result<Vec<(CellId, Measure)>>> =
         experiments.iter().map(|experiment| whole(|| plan(experiment, settings))).collect();

@@ -442,6 +442,17 @@ impl Measure {
                  radiance alone, --ray-radius or --beam-radius"
             );
         }
+        if !has_balls {
+            self.boundary.check_about_rays()?;
+            for (option, is_given) in [("--k", self.k.is_some()), ("--max-radius", self.max_radius.is_some())]
+            {
+                if is_given {
+                    bail!(
+                        "{option} is of balls, and no sensor is read from one; allowed: with sensors of fluence, or without --ray-radius and --beam-radius"
+                    );
+                }
+            }
+        }
         let (has_planes, is_progressive) = (self.planes, self.progressive);
         let ray_k = ray_k(self.ray_k);
         let beam_blur = self.beam_blur.map_or(BeamBlur::default(), BlurName::blur);

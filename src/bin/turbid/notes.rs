@@ -7,6 +7,7 @@ use turbid::geometry::Shape;
 use turbid::integrators::StepRule;
 use turbid::integrators::mapper::{Gathers, Report, Settings};
 use turbid::scene::Scene;
+use turbid::sensor::{Film, Pixel};
 use turbid::surface::Surface;
 
 /// Says which layers are black since no photon was stored for them.
@@ -50,6 +51,21 @@ pub fn tell_step(scene: &Scene, settings: &Settings) -> Result<()> {
     ))
 }
 
+/// Says where variances are too large or too small for a picture's file.
+pub fn tell_variances(film: &Film) -> Result<()> {
+    let is_out = |x: f64| x.is_finite() && x > 0.0 && !(x as f32).is_normal();
+    let is_lost = |pixel: &&Pixel| {
+        pixel.variance().is_some_and(|variance| variance.0.to_array().into_iter().any(is_out))
+    };
+    match film.pixels().iter().filter(is_lost).count() {
+        0 => Ok(()),
+        pixels => note(&format!(
+            "the variances of {pixels} pixels are beyond single precision, in which the picture's file has them as 0 or inf: \
+             other powers of the lights bring them back"
+        )),
+    }
+}
+
 /// Says which look-ups cannot be good, after the picture is made; `stored` are the photons in the global, the caustic and the
 /// volume map.
 pub fn tell_gathers(
@@ -88,6 +104,12 @@ pub fn tell_gathers(
         if let Some(k) = k.filter(|k| stored < *k) {
             note(&format!(
                 "the {name} map holds {stored} photons, fewer than an estimate takes, {k}: --{name} for more of them"
+            ))?;
+        } else if gathers.found == 0 {
+            note(&format!(
+                "none of the {} look-ups in the {name} map found a photon or a beam within {radius:.2e} L: what it should bring is \
+                 missing; allowed: --{name} for more, or a larger radius",
+                gathers.count
             ))?;
         } else if 2 * gathers.underfull > gathers.count {
             let part = 100.0 * gathers.underfull as f64 / gathers.count as f64;

@@ -83,8 +83,8 @@ impl ToneArgs {
     /// The exposure asked for, if it is a number of stops.
     pub fn checked(&self) -> anyhow::Result<Option<f64>> {
         match self.exposure {
-            Some(stops) if stops.is_nan() || stops.abs() > 100.0 => {
-                Err(anyhow!("--exposure is {stops}; allowed: -100 to 100 stops"))
+            Some(stops) if stops.is_nan() || stops.abs() > 1000.0 => {
+                Err(anyhow!("--exposure is {stops}; allowed: -1000 to 1000 stops"))
             }
             other => Ok(other),
         }
@@ -251,8 +251,8 @@ pub struct Readout {
     /// The same for the caustic map [default: --k, if given].
     #[arg(long, value_parser = parse_k, conflicts_with = "radius")]
     caustic_k: Option<usize>,
-    /// The same for the volume map [default: --k, if given].
-    #[arg(long, value_parser = parse_k, conflicts_with = "radius")]
+    /// The same for the volume map [default: --k, if given]. Not where rays are read as a whole.
+    #[arg(long, value_parser = parse_k, conflicts_with_all = ["radius", "ray_radius", "beam_radius"])]
     volume_k: Option<usize>,
     /// Radius within which an estimate takes all photons, instead of the k nearest [L].
     #[arg(long)]
@@ -346,6 +346,20 @@ pub enum BoundaryName {
 }
 
 impl BoundaryName {
+    /// Whether estimates about rays know it.
+    ///
+    /// # Errors
+    /// a treatment of balls
+    pub fn check_about_rays(self) -> anyhow::Result<()> {
+        match self {
+            BoundaryName::None | BoundaryName::Clipped => Ok(()),
+            BoundaryName::Reflection | BoundaryName::LocalLinear => Err(anyhow!(
+                "--boundary is {}, of balls; allowed of rays that are read as a whole: none, clipped",
+                self.treatment().name().replace(' ', "-")
+            )),
+        }
+    }
+
     /// The treatment of this name.
     pub fn treatment(self) -> Treatment {
         match self {
@@ -524,6 +538,9 @@ impl Readout {
         settings.volume.beam_length = self.beams().unwrap_or_default();
         if settings.volume.beam_blur == BeamBlur::ThreeD {
             return Err(anyhow!("--beam-blur is 3d, which is about places; allowed of pictures: 1d, 2d"));
+        }
+        if settings.volume.reads_rays() {
+            self.boundary.check_about_rays()?;
         }
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;

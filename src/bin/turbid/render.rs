@@ -5,7 +5,7 @@ use super::learn::learn;
 use super::load::Source;
 use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
-use super::notes::{tell_empty, tell_gathers, tell_step};
+use super::notes::{tell_empty, tell_gathers, tell_step, tell_variances};
 use super::options;
 use super::picture::{Frame, Held, Photons, Readout, ToneArgs};
 use super::progress::Bar;
@@ -321,6 +321,7 @@ impl Render {
             one_line(&self.output.display().to_string()),
             one_line(&png.display().to_string())
         ))?;
+        tell_variances(&made.film)?;
         if self.with == With::Photons && !scene.plan().is_full {
             let first = made.maps.first();
             let stored = first.map_or([None; 3], |made| made.filled.map(|map| Some(map?.stored)));

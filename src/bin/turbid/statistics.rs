@@ -26,13 +26,19 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
     for MapsMade { number, report, filled, settings } in &made.maps {
         let names = ["global", "caustic", "volume"];
         let nearest = settings.map_or([None; 3], |settings| settings.nearest());
+        let of_volume = settings.map(|settings| settings.volume);
+        let is_along_rays = of_volume.is_some_and(|volume| volume.reads_rays());
+        let has_beams = of_volume.is_some_and(|volume| volume.beam_radius.is_some());
         for ((name, filled), k) in names.into_iter().zip(filled).zip(nearest) {
             if let Some(Filled { stored, emitted }) = filled {
+                let is_volume = name == "volume";
+                let k = k.filter(|_| !(is_volume && is_along_rays));
                 let taken = k.map_or(String::new(), |k| format!(", the {k} nearest an estimate"));
-                writeln!(
-                    text,
-                    "map {number:<3} {name:<8} {stored} photons stored of {emitted} emitted{taken}"
-                )?;
+                let line = match is_volume && has_beams {
+                    true => format!("{stored} beams stored of {emitted} photons emitted"),
+                    false => format!("{stored} photons stored of {emitted} emitted{taken}"),
+                };
+                writeln!(text, "map {number:<3} {name:<8} {line}")?;
             }
         }
         for (name, pass) in [("first", &report.main), ("caustic", &report.caustic)] {
@@ -120,7 +126,7 @@ fn gathered(gathers: &Gathers) -> String {
         return "0".to_string();
     }
     let mut text = format!(
-        "{}, {:.1} photons within {:.4} L in the mean; {} found fewer than k",
+        "{}, {:.1} photons within {:.2e} L in the mean; {} found fewer than k",
         gathers.count,
         gathers.found as f64 / gathers.count as f64,
         gathers.mean_radius(),
