@@ -90,10 +90,9 @@ fn threads_and_parts_change_nothing() {
     study(at, &["mine.toml", "--out", "c", "--part", "1/3", "--seed", "7"]).assert().success();
     let other = refused(at, &["mine.toml", "--out", "mixed", "--merge", "b", "c"]);
     assert!(other.contains("of other settings") && other.contains("seed 7"), "{other}");
-    // A part of other settings takes no place of those that are there, unless it is told to.
+    // A part of other settings takes no place of those that are there.
     let other = refused(at, &["mine.toml", "--out", "c", "--part", "2/3", "--seed", "8"]);
     assert!(other.contains("holds cells of other settings") && other.contains("seed 7"), "{other}");
-    study(at, &["mine.toml", "--out", "c", "--part", "2/3", "--seed", "8", "--fresh"]).assert().success();
     let other = refused(at, &["mine.toml", "--out", "none", "--merge", "nowhere"]);
     assert!(!at.join("none").exists());
     assert!(other.contains("has no cells"), "{other}");

@@ -218,6 +218,16 @@ fn wrong_settings_are_told() {
         &["--step", "0.6", "--no-jitter"],
         &["steps of 6.00e-1 L", "wrong where it is dense", "--step 4.7e-1"],
     );
+    // What finds nothing brings nothing.
+    for thin in [["--beam-radius", "1e-9"], ["--ray-radius", "1e-6"]] {
+        told(
+            &fine,
+            &[&thin[..], &["--gather-rays", "0"]].concat(),
+            &["look-ups in the volume map found a photon or a beam"],
+        );
+    }
+    let faint = fine.replace("power = 1 ", "power = 1e-24 ");
+    told(&faint, &[&["--maps", "2"][..], &good].concat(), &["the variances of", "beyond single precision"]);
     // At random places a homogeneous medium takes any step.
     assert_eq!(notes(&fine, &[&["--step", "0.6"][..], &good].concat()), "");
     let uneven = fog(

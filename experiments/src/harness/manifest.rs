@@ -51,7 +51,7 @@ impl Manifest {
             // Of many parts one asked for by mistake would replace what the others measured.
             ensure!(
                 settings.part.is_none() || earlier.settings == self.settings,
-                "{} holds cells of other settings ({}); allowed for a part: another --out, or --fresh",
+                "{} holds cells of other settings ({}); allowed for a part: another --out",
                 settings.out.display(),
                 earlier.settings
             );

@@ -101,6 +101,7 @@ pub fn tell_gathers(
     {
         let Some(stored) = stored.filter(|stored| *stored > 0 && gathers.count > 0) else { continue };
         let radius = Gathers::mean_radius(gathers);
+        let k = k.filter(|_| name != "volume" || !settings.volume.reads_rays());
         if let Some(k) = k.filter(|k| stored < *k) {
             note(&format!(
                 "the {name} map holds {stored} photons, fewer than an estimate takes, {k}: --{name} for more of them"
