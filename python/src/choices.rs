@@ -31,13 +31,13 @@ pub fn kernel(argument: &str, word: &str) -> PyResult<Kernel> {
 /// # Errors
 /// A treatment of balls
 pub fn check_about_rays(treatment: Treatment) -> anyhow::Result<()> {
-    match treatment {
-        Treatment::None | Treatment::Clipped => Ok(()),
-        Treatment::Reflection | Treatment::LocalLinear => Err(anyhow::anyhow!(
-            "boundary is '{}', of balls; allowed of rays that are read as a whole: none, clipped",
-            treatment.name().replace(' ', "-")
-        )),
+    if treatment.is_of_rays() {
+        return Ok(());
     }
+    Err(anyhow::anyhow!(
+        "boundary is '{}', of balls; allowed of rays that are read as a whole: none, clipped",
+        treatment.name().replace(' ', "-")
+    ))
 }
 
 /// In how many dimensions beams are blurred.

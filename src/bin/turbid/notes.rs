@@ -108,8 +108,8 @@ pub fn tell_gathers(
             ))?;
         } else if gathers.found == 0 {
             note(&format!(
-                "none of the {} look-ups in the {name} map found a photon or a beam within {radius:.2e} L: what it should bring is \
-                 missing; allowed: --{name} for more, or a larger radius",
+                "none of the {} look-ups in the {name} map found a photon or a beam within {radius:.2e} L, so that it brings no \
+                 light: --{name} for more of them, or a larger radius",
                 gathers.count
             ))?;
         } else if 2 * gathers.underfull > gathers.count {

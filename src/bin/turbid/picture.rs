@@ -351,13 +351,14 @@ impl BoundaryName {
     /// # Errors
     /// a treatment of balls
     pub fn check_about_rays(self) -> anyhow::Result<()> {
-        match self {
-            BoundaryName::None | BoundaryName::Clipped => Ok(()),
-            BoundaryName::Reflection | BoundaryName::LocalLinear => Err(anyhow!(
-                "--boundary is {}, of balls; allowed of rays that are read as a whole: none, clipped",
-                self.treatment().name().replace(' ', "-")
-            )),
+        let treatment = self.treatment();
+        if treatment.is_of_rays() {
+            return Ok(());
         }
+        Err(anyhow!(
+            "--boundary is {}, of balls; allowed of rays that are read as a whole: none, clipped",
+            treatment.name().replace(' ', "-")
+        ))
     }
 
     /// The treatment of this name.

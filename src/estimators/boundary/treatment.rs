@@ -23,6 +23,11 @@ pub enum Treatment {
 }
 
 impl Treatment {
+    /// Whether estimates about whole rays know it: the others are of balls, and rays take them for [`Treatment::Clipped`].
+    pub fn is_of_rays(self) -> bool {
+        matches!(self, Treatment::None | Treatment::Clipped)
+    }
+
     /// Every one.
     pub const ALL: [Treatment; 4] =
         [Treatment::None, Treatment::Clipped, Treatment::Reflection, Treatment::LocalLinear];
