@@ -62,7 +62,7 @@ pub fn guided_paths_find_as_much() {
 }
 
 /// Where light scatters dozens of times without loss, and half of all directions are learned though nothing is to be gained: without a bound
-/// on weights a few paths in a thousand carry two thirds of it.
+/// on weights the error is two and a half times as large, too large for the promise of a tenth.
 pub fn guided_paths_stay_light() {
     let (tau, how) = (12.0, Incidence::Beam(1.0));
     let scene = slab(tau, 1.0, 0.0, how);
@@ -71,5 +71,5 @@ pub fn guided_paths_stay_light() {
     let moments =
         numbers(1 << 15, 1, |stream| sample_guided(&scene, &at_depth(6.0), Orders::ALL, guides, stream).0[0]);
     let value = exact(referee(tau, 1.0, how).fluence(6.0).unwrap());
-    verdict::agrees("in the middle", &moments, value, 0.25 * value.0, 1);
+    verdict::agrees("in the middle", &moments, value, 0.1 * value.0, 1);
 }
