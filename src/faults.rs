@@ -100,6 +100,8 @@ pub enum Fault {
     WindowUnfair,
     /// A path that learned directions have made too heavy loses one of its parts.
     PartLost,
+    /// Flights that are led to bright places keep their weight.
+    LedFlightsForgotten,
     /// The noise that is advised forgets that photons of one history gather.
     ClustersForgotten,
     /// The variance of the k nearest is that of k + 1.
@@ -148,7 +150,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 68] = [
+    pub const ALL: [Fault; 69] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -195,6 +197,7 @@ impl Fault {
         Fault::TrackStretched,
         Fault::WindowUnfair,
         Fault::PartLost,
+        Fault::LedFlightsForgotten,
         Fault::ClustersForgotten,
         Fault::FreedomOfThree,
         Fault::VarianceOfRed,

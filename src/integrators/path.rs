@@ -23,7 +23,7 @@ use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, Distances, Flags, Lobe, Roulette, Step, Visitor, Walker, WeightWindows, Windowed, collected,
+    Arrival, Brightness, Distances, Flags, Lobe, Roulette, Step, Visitor, Walker, WeightWindows, Windowed, collected,
     connection, emission, span, transmittance, walk,
 };
 use glam::DVec3;
@@ -319,6 +319,11 @@ impl Visitor for PathVisitor<'_> {
     #[inline(always)]
     fn lobe_on_surface(&self, position: DVec3, normal: DVec3) -> Option<&Lobe> {
         self.directions?.on_surface(position, normal)
+    }
+
+    #[inline(always)]
+    fn brightness(&self) -> Option<&Brightness> {
+        self.directions?.brightness()
     }
 
     /// Classes of paths that are split are not told apart: only what they bring in all is asked for.

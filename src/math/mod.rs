@@ -2,6 +2,7 @@
 
 mod frame;
 mod number;
+mod periodic;
 pub mod quadrature;
 mod ray;
 pub mod warp;
@@ -9,6 +10,7 @@ pub mod warp;
 pub use frame::Frame;
 pub use libm::{atan2, cos, exp, expm1 as exp_m1, log as ln, log1p as ln_1p, sin, sincos as sin_cos};
 pub use number::{Albedo, Asymmetry, Index, NonNegative, Positive};
+pub use periodic::wrap;
 pub use ray::{Interval, Ray};
 
 /// Full solid angle \[sr\].

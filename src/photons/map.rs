@@ -3,7 +3,7 @@
 use super::tree::{Neighbors, Radii};
 use super::{Photon, PhotonTree, Photons, periodic};
 use crate::error::{Error, Result};
-use crate::math::{Interval, Ray};
+use crate::math::{Interval, Ray, wrap};
 use crate::transport::{NoProgress, Progress};
 use glam::{DVec2, DVec3};
 use wide::f32x8;
@@ -114,7 +114,7 @@ impl PhotonMap {
     /// where the ball reaches beyond the copies about the cell, so that what is estimated there is not one either.
     pub fn place(&self, point: DVec3, distance: f64) -> DVec3 {
         let Some(Period { side, reach }) = self.period else { return point };
-        let place = periodic::wrap(point, side);
+        let place = wrap(point, side);
         // The reach may have been the difference of such numbers: rounding is no lack of copies.
         let least = place.x.min(place.y).min(side.x - place.x).min(side.y - place.y)
             + reach * (1.0 + 1e-9)

@@ -4,12 +4,12 @@ use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS};
 use super::importance::{Branching, Importance};
 use super::planes::{Plane, PlaneMap, check_planes, second_leg};
 use super::tallies::{Scores, Tallies};
-use super::{Emitter, Photon, PhotonMap, Photons, check_end, periodic};
+use super::{Emitter, Photon, PhotonMap, Photons, check_end};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::geometry::{Face, Shape};
-use crate::math::Ray;
+use crate::math::{Ray, wrap};
 use crate::rng::{Purpose, Stream, Work};
 use crate::scene::{Orders, Quantity, Scene, Sensor, Target};
 use crate::stats::Moments;
@@ -459,7 +459,7 @@ impl Block<'_> {
         self.pass.non_finite += u64::from(!(walker.weight.is_finite() && position.is_finite()));
         let side = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
         Photon {
-            position: self.pass.period.map_or(position, |side| periodic::wrap(position, side)),
+            position: self.pass.period.map_or(position, |side| wrap(position, side)),
             dir: walker.ray.dir.as_vec3(),
             normal: side.as_vec3(),
             power: (walker.weight * self.run.part.of as f64).0.as_vec3(),
@@ -510,7 +510,7 @@ impl Block<'_> {
             is_short &= FlightBeams { period: None, ..flight }.each(&mut self.tracking, |leg| {
                 *met += 1;
                 if !is_pilot {
-                    let start = period.map_or(leg.start, |side| periodic::wrap(leg.start, side));
+                    let start = period.map_or(leg.start, |side| wrap(leg.start, side));
                     planes.push(second_leg(scene, Beam { start, ..leg }, turning));
                 }
             });

@@ -8,16 +8,6 @@ use super::Photons;
 use crate::math::{Interval, Ray};
 use glam::{DVec2, DVec3};
 
-/// The position modulo the cell's sides in x and y, in [0, side).
-pub fn wrap(p: DVec3, side: DVec2) -> DVec3 {
-    let wrapped = |x: f64, side: f64| {
-        let rest = x - side * (x / side).floor();
-        // A tiny negative x rounds to the side itself.
-        if rest < side { rest } else { 0.0 }
-    };
-    DVec3::new(wrapped(p.x, side.x), wrapped(p.y, side.y), p.z)
-}
-
 /// The stretches of a ray in the cells that it runs through, the ray moved into the first cell each time. `span` has an end.
 pub fn in_cells(ray: &Ray, span: Interval, side: DVec2) -> impl Iterator<Item = (Ray, Interval)> {
     let (ray, start) = (*ray, ray.at(span.start));

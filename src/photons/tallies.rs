@@ -1,8 +1,7 @@
 //! Scores of photons in bins: flux through faces, fluence and absorption in volumes, radiance by connections.
 
-use super::periodic;
 use crate::Spectrum;
-use crate::math::{Interval, Ray, cosine_pair};
+use crate::math::{Interval, Ray, cosine_pair, wrap};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::{Binned, Crossing, Quantity, Scene, SceneHit, Scoring, Sensor, Space, Start, Target};
@@ -13,7 +12,7 @@ use glam::{DVec2, DVec3};
 
 /// A position as the bins of a scene know it: in the cell, where there is one.
 fn wrapped(scene: &Scene, p: DVec3) -> DVec3 {
-    scene.periodic_cell().map_or(p, |periodic_cell| periodic::wrap(p, periodic_cell.side))
+    scene.periodic_cell().map_or(p, |periodic_cell| wrap(p, periodic_cell.side))
 }
 
 /// The period of a scene along x and y \[L\].

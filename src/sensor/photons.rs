@@ -11,10 +11,11 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::{BeamBlur, Estimator, Gather, RayEnds};
 use crate::geometry::Shape;
+use crate::math::wrap;
 use crate::photons::beams;
 use crate::photons::planes::{self, check_planes};
 use crate::photons::{
-    BUILD_SECONDS, Emitter, Histories, Part, PeakBytes, Photon, Run, Scores, periodic, score_bytes,
+    BUILD_SECONDS, Emitter, Histories, Part, PeakBytes, Photon, Run, Scores, score_bytes,
 };
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
@@ -139,7 +140,7 @@ pub fn by_given_photons(
         if let Some(cell) = scene.periodic_cell() {
             photons
                 .iter_mut()
-                .for_each(|photon| photon.position = periodic::wrap(photon.position, cell.side));
+                .for_each(|photon| photon.position = wrap(photon.position, cell.side));
         }
         let stored = Stored { photons: vec![photons.into()], beams: Vec::new(), planes: Vec::new(), emitted };
         let maps = maps_of(scene, (&sensors, wanted), stored, margin, (settings.seed, replicate))?;
@@ -454,7 +455,7 @@ pub(super) fn margin_of(scene: &Scene, sensors: &[Sensor], cap: f64) -> Result<f
 pub(super) fn margin(sensors: &[Sensor], side: DVec2, cap: f64) -> Result<f64> {
     let beyond = sensors.iter().map(|sensor| match sensor.quantity {
         Quantity::Fluence(p) => {
-            let p = periodic::wrap(p, side);
+            let p = wrap(p, side);
             cap - p.x.min(p.y).min(side.x - p.x).min(side.y - p.y)
         }
         Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. } | Binned::Fluence { .. }) => cap,

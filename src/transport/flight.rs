@@ -86,11 +86,7 @@ pub fn free_flight(
         Some(segment) if forced => {
             collision(scene, ray, segment.interval.end, interior, segment.medium, weight)
         }
-        _ if is_grey => Flight::Uncollided(weight),
-        _ => {
-            let transmitted = decay(scene.optical_depth(ray, end, interior));
-            Flight::Uncollided(weight * transmitted * (weight.sum() / (weight * transmitted).sum()))
-        }
+        _ => uncollided(scene, ray, end, interior, weight),
     }
 }
 
@@ -154,7 +150,17 @@ fn closed(medium: &Homogeneous, part: Interval, weight: Spectrum, stream: &mut S
     End::Collision(part.start + flown, after)
 }
 
-fn collision(scene: &Scene, ray: &Ray, t: f64, interior: usize, medium: usize, weight: Spectrum) -> Flight {
+/// What arrives at the end of a ray through homogeneous media.
+pub(super) fn uncollided(scene: &Scene, ray: &Ray, end: f64, interior: usize, weight: Spectrum) -> Flight {
+    if scene.plan().has_grey_extinction {
+        return Flight::Uncollided(weight);
+    }
+    let transmitted = decay(scene.optical_depth(ray, end, interior));
+    Flight::Uncollided(weight * transmitted * (weight.sum() / (weight * transmitted).sum()))
+}
+
+/// A collision in a homogeneous medium.
+pub(super) fn collision(scene: &Scene, ray: &Ray, t: f64, interior: usize, medium: usize, weight: Spectrum) -> Flight {
     if scene.plan().has_grey_extinction {
         return Flight::Collision { t, medium, weight };
     }
@@ -164,7 +170,7 @@ fn collision(scene: &Scene, ray: &Ray, t: f64, interior: usize, medium: usize, w
 }
 
 /// A channel, in proportion to its weight.
-fn choose(weight: Spectrum, u: f64) -> usize {
+pub(super) fn choose(weight: Spectrum, u: f64) -> usize {
     let target = u * weight.sum();
     if target < weight[0] {
         0

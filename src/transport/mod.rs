@@ -1,7 +1,8 @@
-//! Free flight, roulette, weight windows, learned directions, the one random walk that paths and photons share, and blocks of histories.
+//! Free flight, roulette, weight windows, learned directions and distances, the one random walk that paths and photons share, and blocks of histories.
 
 mod blocks;
 mod bounce;
+mod brightness;
 mod emission;
 mod equal_angles;
 mod flags;
@@ -15,6 +16,7 @@ mod walk;
 mod windows;
 
 pub use blocks::{BLOCK, NoProgress, Progress, blocks_at_once, in_parallel, run_blocks, run_blocks_of};
+pub use brightness::{Brightness, BrightnessGrid, Ends};
 pub use emission::{collected, emission};
 pub use equal_angles::{Distances, EqualAngles, span};
 pub use flags::Flags;

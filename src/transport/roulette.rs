@@ -51,6 +51,14 @@ impl Roulette {
         }
     }
 
+    /// The same game behind a flight whose end multiplied the weight by this, beside what the direction did.
+    pub fn flown(self, factor: f64) -> Self {
+        match self {
+            Roulette::Analog => Roulette::Analog,
+            Roulette::Below { threshold, led } => Roulette::Below { threshold, led: led * factor },
+        }
+    }
+
     /// The weight after an event that keeps `albedo` of each channel, or none if the history ends there.
     ///
     /// Analog: survival with q = sum(a_c P_c) / sum(P_c), then P_c a_c / q: the summed power is unchanged, exactly

@@ -1,6 +1,6 @@
 //! Who watches a walk, and what it is told.
 
-use super::{Flags, Lobe, Windowed};
+use super::{Brightness, Flags, Lobe, Windowed};
 use crate::Spectrum;
 use crate::math::Ray;
 use crate::rng::Stream;
@@ -110,6 +110,12 @@ pub trait Visitor {
     /// The same on a diffuse surface with this geometric normal, on the side that the history is on.
     #[inline(always)]
     fn lobe_on_surface(&self, _position: DVec3, _normal: DVec3) -> Option<&Lobe> {
+        None
+    }
+
+    /// How bright places are, for flights to end where it is bright; none for most.
+    #[inline(always)]
+    fn brightness(&self) -> Option<&Brightness> {
         None
     }
 

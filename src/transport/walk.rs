@@ -103,7 +103,7 @@ fn follow<V: Visitor>(
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let forced = scene.plan().forces_first_collision && walker.order == 0 && hit.is_none();
-        let flight = fly(scene, (&mut walker, roulette), (hit, flown, end), forced, split, stream, visitor);
+        let flight = fly(scene, (&mut walker, &mut roulette), (hit, flown, end), forced, split, stream, visitor);
         let Some(flight) = flight else { return };
         let arrived = walker.weight;
         match flight {
@@ -200,7 +200,7 @@ fn look_ahead<V: Visitor>(
 /// looked along before.
 fn fly<V: Visitor>(
     scene: &Scene,
-    (walker, roulette): (&mut Walker, Roulette),
+    (walker, roulette): (&mut Walker, &mut Roulette),
     (hit, mut flown, end): (Option<SceneHit>, f64, f64),
     forced: bool,
     split: &mut Split,
@@ -214,8 +214,15 @@ fn fly<V: Visitor>(
             walker.weight *= 1.0 / copies as f64;
             split.count += copies - 1;
             let others = if planted(Fault::PartLost) { copies - 2 } else { copies - 1 };
-            let waiting = || Waiting { walker: *walker, roulette, hit, flown };
+            let waiting = || Waiting { walker: *walker, roulette: *roulette, hit, flown };
             split.waiting.extend(std::iter::repeat_with(waiting).take(others));
+        }
+        let ahead = (hit.as_ref(), end, walker.interior);
+        let brightness = visitor.brightness().filter(|_| !forced);
+        let led = brightness.and_then(|by| by.fly(scene, &walker.ray, ahead, walker.weight, stream));
+        if let Some((flight, factor)) = led {
+            *roulette = roulette.flown(factor);
+            return Some(flight);
         }
         return Some(free_flight(scene, &walker.ray, end, walker.interior, walker.weight, forced, stream));
     };
@@ -227,7 +234,7 @@ fn fly<V: Visitor>(
         walker.weight *= factor;
         split.count += copies.saturating_sub(1);
         for _ in 1..copies {
-            split.waiting.push(Waiting { walker: *walker, roulette, hit, flown });
+            split.waiting.push(Waiting { walker: *walker, roulette: *roulette, hit, flown });
         }
         if copies == 0 {
             return None;

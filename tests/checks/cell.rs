@@ -3,7 +3,7 @@
 use crate::support::scenes::{CELL, Incidence, slab};
 use crate::support::verdict::{self, Fit};
 use glam::DVec3;
-use turbid::photons::periodic;
+use turbid::math::wrap;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Scene;
 use turbid::transport::{Roulette, Step, Visitor, Walker, walk};
@@ -56,12 +56,12 @@ pub fn unwrapped(scene: &Scene) -> Vec<DVec3> {
 
 /// The wrapped position: modulo the cell's side.
 pub fn wrapped(p: DVec3) -> DVec3 {
-    periodic::wrap(p, glam::DVec2::splat(CELL))
+    wrap(p, glam::DVec2::splat(CELL))
 }
 
 /// The same position under four mirrors: reflected back and forth.
 pub fn mirrored(p: DVec3) -> DVec3 {
-    let twice = periodic::wrap(p, glam::DVec2::splat(2.0 * CELL));
+    let twice = wrap(p, glam::DVec2::splat(2.0 * CELL));
     let back = |x: f64| if x > CELL { 2.0 * CELL - x } else { x };
     DVec3::new(back(twice.x), back(twice.y), p.z)
 }

@@ -620,7 +620,7 @@ fn copies_of_a_cell_have_their_radii() {
         (0..400).map(|_| photon(DVec3::from(stream.triple()) * side.extend(1.0), Vec3::Z)).collect();
     let half = (0.5 * side).extend(0.0);
     let moved = here.iter().map(|one| {
-        let position = turbid::photons::periodic::wrap(one.position + half, side);
+        let position = turbid::math::wrap(one.position + half, side);
         Photon { position, ..*one }
     });
     let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);

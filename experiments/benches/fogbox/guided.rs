@@ -37,7 +37,7 @@ pub fn compare(out: &mut impl Write, wanted: &dyn Fn(&str) -> bool, count: u64) 
     for name in SCENES.into_iter().filter(|name| wanted(name)) {
         let (scene, camera) = load(name)?;
         let (mut paths, mut guided) = (Vec::<Round>::new(), Vec::<Round>::new());
-        let (mut learning, mut led) = (0.0, [[0; 2]; 2]);
+        let (mut learning, mut led, mut flights) = (0.0, [[0; 2]; 2], 0.0);
         for replicate in 0..count {
             let streams = Streams { seed: 1, replicate };
             let picture = |method: Method<'_>, streams: Streams| -> Result<Film> {
@@ -50,6 +50,7 @@ pub fn compare(out: &mut impl Write, wanted: &dyn Fn(&str) -> bool, count: u64) 
                 let settings = DirectionSettings { histories: HISTORIES, seed: 1, replicate, share: None };
                 let directions = Directions::learn(&scene, &settings, &NoProgress)?;
                 led = directions.counts();
+                flights = directions.brightness().map_or(0.0, |brightness| brightness.share);
                 spent = Some(start.elapsed().as_secs_f64());
                 picture(Method::Guided(&scene, &directions), Streams { seed: 2, ..streams })
             })?);
@@ -64,7 +65,7 @@ pub fn compare(out: &mut impl Write, wanted: &dyn Fn(&str) -> bool, count: u64) 
         let [[media, in_media], [surfaces, on_surfaces]] = led;
         writeln!(
             out,
-            "{:NAMES$} learning takes {learning:.2} s; led in {in_media} of {media} cells in media, {on_surfaces} of {surfaces} on surfaces",
+            "{:NAMES$} learning takes {learning:.2} s; led in {in_media} of {media} cells in media, {on_surfaces} of {surfaces} on surfaces, a share of {flights} of flights",
             ""
         )?;
     }

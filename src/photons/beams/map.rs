@@ -2,7 +2,7 @@
 
 use super::{Beam, BeamTree, Chord, Crossing};
 use crate::error::{Error, Result};
-use crate::math::{Interval, Ray};
+use crate::math::{Interval, Ray, wrap};
 use crate::photons::periodic;
 use glam::{DVec2, DVec3};
 
@@ -120,7 +120,7 @@ impl BeamMap {
         if radius.is_nan() || radius > side.min_element() {
             return false;
         }
-        let place = periodic::wrap(place, side);
+        let place = wrap(place, side);
         // The cells that points within the radius are in.
         let cells = |axis: usize| {
             let (low, high) = (place[axis] - radius, place[axis] + radius);

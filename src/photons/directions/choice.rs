@@ -16,12 +16,12 @@ use glam::DVec3;
 const SIDES: [usize; 3] = [8, 16, 32];
 const FINE: usize = 32;
 /// Shares that are tried: no weight of one scattering is above 2. A larger one is never best at this noise, however narrow the light.
-const SHARES: [f64; 2] = [0.25, 0.5];
+pub(super) const SHARES: [f64; 2] = [0.25, 0.5];
 /// Variance of what a path finds along a direction, over the square of the mean: about that of a box of fog and of rooms. Efficiency
 /// is the same from 0.25 to 3 within the noise of its measurement.
-const NOISE: f64 = 2.0;
+pub(super) const NOISE: f64 = 2.0;
 /// Part of the second moment that is to be left at most: what takes longer has to gain something.
-const LEFT: f64 = 0.8;
+pub(super) const LEFT: f64 = 0.8;
 
 /// The directions of a surface or a phase function.
 pub(super) enum Own<'a> {

@@ -15,15 +15,18 @@
 mod arrival;
 mod cells;
 mod choice;
+mod distances;
 
-use super::{Emitter, Histories, Photon, Run, Storage, periodic};
+use super::{Emitter, Histories, Photon, Run, Storage};
 use crate::error::{Error, Result};
 use crate::light::Light;
+use crate::math::wrap;
 use crate::rng::Purpose;
 use crate::scene::Scene;
-use crate::transport::{Lobe, NoProgress, Progress};
+use crate::transport::{Brightness, Lobe, NoProgress, Progress};
 use arrival::Arrival;
 use cells::Cells;
+use distances::Lit;
 use glam::{DVec2, DVec3};
 
 /// Parts of the photons, by their histories, that know nothing of each other.
@@ -58,28 +61,20 @@ pub struct Directions {
     media: Cells,
     /// By the axis that normals are next to, and their sign.
     surfaces: [Cells; 6],
+    brightness: Option<Brightness>,
     period: Option<DVec2>,
 }
 
-/// Which photons are learned from.
-struct Kept {
-    /// Whether some light fills space: paths find it by themselves, in part or wholly.
-    is_direct_kept: bool,
-}
+/// Every photon, in media and on surfaces.
+struct Everything;
 
-impl Kept {
-    fn keeps(&self, photon: &Photon) -> bool {
-        self.is_direct_kept || !photon.flags.is_direct()
-    }
-}
-
-impl Storage for Kept {
-    fn in_medium(&self, _history: u64, photon: &Photon) -> bool {
-        self.keeps(photon)
+impl Storage for Everything {
+    fn in_medium(&self, _history: u64, _photon: &Photon) -> bool {
+        true
     }
 
-    fn on_surface(&self, _history: u64, photon: &Photon) -> bool {
-        self.keeps(photon)
+    fn on_surface(&self, _history: u64, _photon: &Photon) -> bool {
+        true
     }
 }
 
@@ -101,13 +96,16 @@ impl Directions {
                 "from 1 to 10,000,000",
             ));
         }
-        let kept = Kept { is_direct_kept: scene.lights().iter().any(Light::fills_space) };
+        // Where some light fills space paths find it by themselves, in part or wholly; direct light else by connections.
+        let has_space_filling = scene.lights().iter().any(Light::fills_space);
+        let is_asked = |photon: &Photon| has_space_filling || !photon.flags.is_direct();
         let emitter = Emitter::towards_scene(scene);
         let (mut media, mut surfaces) = (Vec::new(), [(); 6].map(|()| Vec::new()));
+        let mut lit = (Vec::new(), Vec::new());
         if histories > PILOT {
             let pilot = Histories { count: PILOT, seed, replicate, max_order: None };
             let pilot = Run { purpose: Purpose::Pilot, is_pilot: true, ..Run::new(scene, &emitter, pilot) };
-            let each = pilot.pass(&kept, &NoProgress)?.met.iter().sum::<u64>() as f64 / PILOT as f64;
+            let each = pilot.pass(&Everything, &NoProgress)?.met.iter().sum::<u64>() as f64 / PILOT as f64;
             if each * histories as f64 > MOST_PHOTONS {
                 return Err(Error::Scene(format!(
                     "{histories} histories that paths are guided by would store about {:.1e} photons; allowed: at most {:.0} \
@@ -124,17 +122,23 @@ impl Directions {
             let replicate = replicate.wrapping_mul(PARTS).wrapping_add(part);
             let histories = Histories { count, seed, replicate, max_order: None };
             let run = Run { purpose: Purpose::Directions, ..Run::new(scene, &emitter, histories) };
-            let pass = run.pass(&kept, progress)?;
-            let arrival = |photon: Photon| Arrival::new(&photon, part as usize);
-            media.extend(pass.photons().map(arrival));
+            let pass = run.pass(&Everything, progress)?;
+            let part = part as usize;
+            for photon in pass.photons() {
+                lit.0.extend(Lit::in_medium(scene, &photon, part));
+                media.extend(is_asked(&photon).then(|| Arrival::new(&photon, part)));
+            }
             for photon in pass.surfaces.iter().flat_map(|part| part.iter()) {
-                surfaces[face(photon.normal.as_dvec3())].push(arrival(photon));
+                lit.1.push(Lit::on_surface(&photon, part));
+                let face = &mut surfaces[face(photon.normal.as_dvec3())];
+                face.extend(is_asked(&photon).then(|| Arrival::new(&photon, part)));
             }
         }
         let period = scene.periodic_cell().map(|cell| cell.side);
         Ok(Directions {
             media: Cells::new(media, share, &medium_at),
             surfaces: surfaces.map(|arrivals| Cells::new(arrivals, share, &medium_at)),
+            brightness: distances::learned(scene, (&lit.0, &lit.1), period, share, (seed, replicate)),
             period,
         })
     }
@@ -152,6 +156,12 @@ impl Directions {
         self.surfaces[face(normal.as_vec3().as_dvec3())].at(self.place(position))
     }
 
+    /// How bright places are, if flights are to end by it.
+    #[inline]
+    pub fn brightness(&self) -> Option<&Brightness> {
+        self.brightness.as_ref()
+    }
+
     /// Cells in media and on surfaces, and those of them whose histograms are used.
     pub fn counts(&self) -> [[usize; 2]; 2] {
         let add = |[cells, used]: [usize; 2], more: [usize; 2]| [cells + more[0], used + more[1]];
@@ -159,7 +169,7 @@ impl Directions {
     }
 
     fn place(&self, position: DVec3) -> DVec3 {
-        self.period.map_or(position, |side| periodic::wrap(position, side))
+        self.period.map_or(position, |side| wrap(position, side))
     }
 }
 
