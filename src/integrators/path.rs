@@ -23,8 +23,8 @@ use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, Brightness, Distances, Flags, Lobe, Roulette, Step, Visitor, Walker, WeightWindows, Windowed, collected,
-    connection, emission, span, transmittance, walk,
+    Arrival, Brightness, Distances, Flags, Lobe, Roulette, Step, Visitor, Walker, WeightWindows, Windowed,
+    collected, connection, emission, span, transmittance, walk,
 };
 use glam::DVec3;
 

@@ -14,9 +14,7 @@ use crate::geometry::Shape;
 use crate::math::wrap;
 use crate::photons::beams;
 use crate::photons::planes::{self, check_planes};
-use crate::photons::{
-    BUILD_SECONDS, Emitter, Histories, Part, PeakBytes, Photon, Run, Scores, score_bytes,
-};
+use crate::photons::{BUILD_SECONDS, Emitter, Histories, Part, PeakBytes, Photon, Run, Scores, score_bytes};
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
 use crate::transport::{BLOCK, NoProgress, Progress, blocks_at_once};
@@ -138,9 +136,7 @@ pub fn by_given_photons(
     for (replicate, photons) in (0..).zip(given) {
         let (mut photons, emitted) = photons?;
         if let Some(cell) = scene.periodic_cell() {
-            photons
-                .iter_mut()
-                .for_each(|photon| photon.position = wrap(photon.position, cell.side));
+            photons.iter_mut().for_each(|photon| photon.position = wrap(photon.position, cell.side));
         }
         let stored = Stored { photons: vec![photons.into()], beams: Vec::new(), planes: Vec::new(), emitted };
         let maps = maps_of(scene, (&sensors, wanted), stored, margin, (settings.seed, replicate))?;

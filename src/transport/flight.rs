@@ -160,7 +160,14 @@ pub(super) fn uncollided(scene: &Scene, ray: &Ray, end: f64, interior: usize, we
 }
 
 /// A collision in a homogeneous medium.
-pub(super) fn collision(scene: &Scene, ray: &Ray, t: f64, interior: usize, medium: usize, weight: Spectrum) -> Flight {
+pub(super) fn collision(
+    scene: &Scene,
+    ray: &Ray,
+    t: f64,
+    interior: usize,
+    medium: usize,
+    weight: Spectrum,
+) -> Flight {
     if scene.plan().has_grey_extinction {
         return Flight::Collision { t, medium, weight };
     }

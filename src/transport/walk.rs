@@ -103,7 +103,8 @@ fn follow<V: Visitor>(
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let forced = scene.plan().forces_first_collision && walker.order == 0 && hit.is_none();
-        let flight = fly(scene, (&mut walker, &mut roulette), (hit, flown, end), forced, split, stream, visitor);
+        let flight =
+            fly(scene, (&mut walker, &mut roulette), (hit, flown, end), forced, split, stream, visitor);
         let Some(flight) = flight else { return };
         let arrived = walker.weight;
         match flight {

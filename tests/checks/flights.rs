@@ -1,16 +1,19 @@
-//! Free flights by their random numbers: the inverse of the exponential distribution, exactly, and its mean.
+//! Free flights by their random numbers: the inverse of the exponential distribution, exactly, and its mean; and flights that are led.
 
 use super::media::varying;
-use crate::support::scenes::{bounded, region, sphere, volume_source};
+use crate::support::scenes::{
+    bounded, cuboid, homogeneous, lambertian, layer, region, sphere, volume_source,
+};
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::math::{Ray, ln_1p};
+use turbid::math::{Ray, exp, ln_1p};
 use turbid::medium::{Density, Grid};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Region, SURROUNDINGS, Scene};
 use turbid::stats::Moments;
-use turbid::transport::{Flight, NoProgress, free_flight, run_blocks};
+use turbid::surface::{Mirror, Surface};
+use turbid::transport::{Brightness, BrightnessGrid, Flight, NoProgress, free_flight, run_blocks};
 
 /// Flights drawn a stream.
 const DRAWS: u64 = 1024;
@@ -103,5 +106,107 @@ pub fn flights_are_a_mean_free_path_long() {
         let moments = run_blocks((1u64 << log2) / DRAWS, &NoProgress, block, merge).unwrap().unwrap();
         verdict::agrees(name, &moments, (1.0, 1e-15), promise, 82);
         verdict::rejects(name, &moments, 1.0 + promise, 82);
+    }
+}
+
+/// A grid of brightness over the scenes below, dark in a fifth of its cells.
+fn patchy(seed: u64) -> BrightnessGrid {
+    let (low, high) = (DVec3::splat(-3.0), DVec3::splat(5.0));
+    let mut grid = BrightnessGrid::new(low, high);
+    let mut stream = Stream::new(seed, Purpose::Synthetic, 1, 0);
+    for cell in 0..512 {
+        let middle = DVec3::new((cell % 8) as f64, (cell / 8 % 8) as f64, (cell / 64) as f64) + 0.5;
+        let u = stream.unit();
+        grid.add(low + middle, if u < 0.2 { 0.0 } else { u * u });
+    }
+    grid
+}
+
+/// Three layers of colour along z, the last without extinction in red, and a void: with what lies behind them.
+fn layered(behind: Option<Surface>) -> Scene {
+    let layer = |near: f64, far: f64, sigma_t: Spectrum| Region {
+        shape: cuboid(DVec3::new(-1.0, -1.0, near), DVec3::new(1.0, 1.0, far)),
+        medium: homogeneous(sigma_t, Spectrum::rgb(0.9, 0.5, 0.2), 0.0),
+    };
+    let regions = vec![
+        layer(0.2, 1.0, Spectrum::rgb(0.5, 1.0, 2.0)),
+        layer(1.0, 1.5, Spectrum::ZERO),
+        layer(1.5, 2.0, Spectrum::grey(0.7)),
+        layer(2.0, 3.0, Spectrum::rgb(0.0, 0.3, 20.0)),
+    ];
+    let wall = cuboid(DVec3::new(-2.0, -2.0, 4.0), DVec3::new(2.0, 2.0, 4.5));
+    let objects = behind.into_iter().map(|surface| (wall.clone(), surface)).collect();
+    bounded(regions, objects, vec![volume_source(sphere(DVec3::ZERO, 9.0))])
+}
+
+/// Flights that are led to bright places collide up to each distance, and pass, as the transmittance has it, channel by channel,
+/// whatever weight they start with and whatever is said to be bright: through layers of colour to a wall, a mirror or nothing, in a slab
+/// without end, through 20,000 mean free paths.
+pub fn led_flights_are_as_many() {
+    const FLIGHTS: u64 = 1 << 17;
+    let (up, level) = (DVec3::Z, DVec3::X);
+    let slab = |sigma_t: f64| {
+        let within = region(layer(1.0), sigma_t, 0.9, 0.0);
+        bounded(vec![within], Vec::new(), vec![volume_source(sphere(DVec3::ZERO, 1.0))])
+    };
+    let grey = Spectrum::rgb(0.5, 0.5, 0.5);
+    let cases = [
+        (
+            "a wall",
+            layered(Some(lambertian(Spectrum::rgb(0.9, 0.5, 0.1)))),
+            up,
+            vec![0.5, 1.7, 2.1, 3.0],
+            Spectrum::rgb(1.0, 3.0, 0.5),
+        ),
+        (
+            "a mirror",
+            layered(Some(Surface::Mirror(Mirror::new(Spectrum::grey(0.9)).unwrap()))),
+            up,
+            vec![1.2, 1.9],
+            Spectrum::rgb(0.0, 1.0, 1.0),
+        ),
+        ("nothing", layered(None), up, vec![0.9, 2.6], Spectrum::ONE),
+        ("a level slab", slab(2.0), level, vec![0.3, 2.0, 9.0], grey),
+        ("a deep slab", slab(2e4), level, vec![2e-5, 2e-4], grey),
+    ];
+    for (seed, (what, scene, dir, distances, weight)) in (1..).zip(cases) {
+        let brightness =
+            Brightness { share: 0.5, media: patchy(seed), surfaces: patchy(seed + 9), period: None };
+        let ray = Ray::new(DVec3::new(0.1, 0.2, 0.1), dir);
+        let hit = scene.hit(&ray, None);
+        let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
+        let mut collided = vec![[Moments::new(); 3]; distances.len()];
+        let mut passed = [Moments::new(); 3];
+        let mut longest = 0.0f64;
+        for history in 0..FLIGHTS {
+            let mut stream = Stream::new(seed, Purpose::Synthetic, 0, history);
+            let ahead = (hit.as_ref(), end, SURROUNDINGS);
+            let (flight, factor) = brightness.fly(&scene, &ray, ahead, weight, &mut stream).unwrap();
+            longest = longest.max(factor);
+            let (t, after) = match flight {
+                Flight::Collision { t, weight, .. } => (t, weight),
+                Flight::Uncollided(weight) => (f64::INFINITY, weight),
+            };
+            for channel in 0..3 {
+                for (moments, distance) in collided.iter_mut().zip(&distances) {
+                    moments[channel].push(if t < *distance { after[channel] } else { 0.0 });
+                }
+                passed[channel].push(if t == f64::INFINITY { after[channel] } else { 0.0 });
+            }
+        }
+        assert!(longest > 1.5 && longest <= 2.0, "{what}: {longest}");
+        for channel in (0..3).filter(|channel| weight[*channel] > 0.0) {
+            let through = |t: f64| exp(-scene.optical_depth(&ray, t, SURROUNDINGS)[channel]);
+            for (moments, distance) in collided.iter().zip(&distances) {
+                let expected = weight[channel] * (1.0 - through(*distance));
+                let what = format!("{what}, channel {channel}, to {distance}");
+                verdict::agrees(&what, &moments[channel], (expected, 1e-12), 0.05 * weight.max(), seed);
+            }
+            let expected = weight[channel] * through(end);
+            if expected > 1e-3 {
+                let what = format!("{what}, channel {channel}, beyond");
+                verdict::agrees(&what, &passed[channel], (expected, 1e-12), 0.05 * weight.max(), seed);
+            }
+        }
     }
 }

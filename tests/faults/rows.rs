@@ -164,6 +164,11 @@ const fn inside(fault: Fault) -> Row {
         Fault::PartLost => ("one part of a heavy path lost", "guided_paths_stay_light", |_| {
             directions::guided_paths_stay_light()
         }),
+        Fault::LedFlightsForgotten => {
+            ("flights led to bright places keep their weight", "led_flights_are_as_many", |_| {
+                flights::led_flights_are_as_many()
+            })
+        }
         Fault::RadianceUnscaled => {
             ("radiance not scaled by a refraction", "a_cavity_is_brighter_by_the_squared_index", |_| {
                 glass::a_cavity_is_brighter_by_the_squared_index()
@@ -452,6 +457,7 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::TrackStretched),
     inside(Fault::WindowUnfair),
     inside(Fault::PartLost),
+    inside(Fault::LedFlightsForgotten),
     inside(Fault::SharedForOne),
     inside(Fault::LobeForgotten),
     inside(Fault::ClustersForgotten),

@@ -182,3 +182,8 @@ fn flights_are_the_exact_inverse() {
 fn flights_are_a_mean_free_path_long() {
     flights::flights_are_a_mean_free_path_long();
 }
+
+#[test]
+fn led_flights_are_as_many() {
+    flights::led_flights_are_as_many();
+}

@@ -9,7 +9,7 @@
 //! against converged values of an independent renderer, outside of the box against the first row. Of the photon mapper
 //! (`-- maps`) it is the error against the mean of all path-traced rounds, split into the spread between maps and the rest, its bias. `-- lines` reads the volume map in
 //! balls along each ray, about it and by beams; `-- guided` leads paths to where photons came from, in scenes of the gallery too (a name
-//! beside it: that one alone).
+//! beside it: that one alone); `-- pass` is the photon pass.
 //!
 //! The peer renders the same scene if there is a Python that knows it: `python3 -m venv VENV &&
 //! VENV/bin/pip install mitsuba numpy`, then `TURBID_PYTHON=VENV/bin/python` before the command. Its just-in-time
@@ -19,6 +19,7 @@ mod guided;
 mod lines;
 mod maps;
 mod others;
+mod pass;
 mod peer;
 mod scenes;
 
@@ -56,6 +57,9 @@ fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let (numbers, wanted): (Vec<_>, Vec<_>) = words.into_iter().partition(|word| word.parse::<u64>().is_ok());
     let rounds_wanted = numbers.first().and_then(|n| n.parse().ok()).unwrap_or(ROUNDS as u64).max(2);
+    if wanted.iter().any(|word| word == "pass") {
+        return pass::compare(&mut std::io::stdout().lock(), rounds_wanted);
+    }
     if wanted.iter().any(|word| word == "lines") {
         return lines::compare(&mut std::io::stdout().lock(), &scenes::load("iso")?, &scenes::camera()?);
     }

@@ -1,7 +1,8 @@
 """Scenes by Mitsuba 3's volumetric path tracer, again and again: the peer of the bench `fogbox`.
 
 Usage: peer.py VARIANT FOLDER, where FOLDER holds the box (white.obj, red.obj, green.obj, light.obj) or scenes of Mitsuba. Reads
-lines `scene samples seed` (iso, hg or het is the box; any other is the file of this name) and answers each with the processor seconds of the picture on the standard
+lines `scene samples seed` (iso, hg or het is the box; clear-N is the box without fog, by the particle tracer up to N bounces, under
+a lamp that reflects; any other is the file of this name) and answers each with the processor seconds of the picture on the standard
 output as text, one line, and then its 128 x 128 x 3 radiances as little-endian float32.
 """
 
@@ -46,19 +47,26 @@ def matt(file, rgb):
 
 
 def scene(name):
-    if name not in G:
+    is_clear = name.startswith("clear-")
+    if name not in G and not is_clear:
         return mi.load_file(f"{FOLDER}/{name}.xml")
     place = mi.ScalarTransform4f().look_at(origin=[0, 0, 0.95], target=[0, 0, 0], up=[0, 1, 0])
     film = {"type": "hdrfilm", "width": WIDTH, "height": WIDTH, "rfilter": {"type": "box"}}
     film |= {"pixel_format": "rgb", "component_format": "float32"}
     camera = {"type": "perspective", "fov": 80.0, "fov_axis": "x", "near_clip": 1e-3, "to_world": place}
     light = {"type": "area", "radiance": {"type": "rgb", "value": [18.387, 13.9873, 6.75357]}}
-    black = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.0, 0.0, 0.0]}}
+    reflectance = 0.8 if is_clear else 0.0
+    body = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [reflectance] * 3}}
+    integrator = {"type": "volpath", "max_depth": -1, "rr_depth": 5}
+    if is_clear:
+        bounces = int(name.removeprefix("clear-"))
+        integrator = {"type": "ptracer", "max_depth": bounces, "rr_depth": 1000}
+    medium = {} if is_clear else {"medium": fog(name)}
     return mi.load_dict(
         {
             "type": "scene",
-            "integrator": {"type": "volpath", "max_depth": -1, "rr_depth": 5},
-            "camera": camera | {"film": film, "sampler": {"type": "independent"}, "medium": fog(name)},
+            "integrator": integrator,
+            "camera": camera | {"film": film, "sampler": {"type": "independent"}} | medium,
             "white": matt("white.obj", [0.885809, 0.698859, 0.666422]),
             "red": matt("red.obj", [0.570068, 0.0430135, 0.0443706]),
             "green": matt("green.obj", [0.105421, 0.37798, 0.076425]),
@@ -68,7 +76,7 @@ def scene(name):
                 .translate([0.0, 0.99, 0.01])
                 .rotate([1, 0, 0], 90)
                 .scale([0.23, 0.19, 1.0]),
-                "bsdf": black,
+                "bsdf": body,
                 "emitter": light,
             },
         }
