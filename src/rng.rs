@@ -40,7 +40,7 @@ pub enum Purpose {
     /// What photons' beams carry through media that vary, beside their walk.
     Beams,
     /// Photon histories that say where light comes from.
-    Directions,
+    Guide,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

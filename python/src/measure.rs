@@ -103,8 +103,8 @@ impl Request {
         memory::check(|| format!("{bins} bins"), row_bytes(scene))?;
         check_paths(scene)?;
         let windows = weight_windows.then(|| WeightWindows::new(scene)).transpose()?;
-        let directions = learn(scene, guide, Streams { seed, replicate: 0 }, watch)?;
-        let guides = Guides { windows: windows.as_ref(), directions: directions.as_ref() };
+        let guide = learn(scene, guide, Streams { seed, replicate: 0 }, watch)?;
+        let guides = Guides { windows: windows.as_ref(), learned: guide.as_ref() };
         watch.stage("paths", samples.saturating_mul(bins));
         let measurements = match self.with {
             With::Bidirectional => by_bidirectional_paths(scene, &settings, watch)?,

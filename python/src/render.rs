@@ -16,7 +16,7 @@ use turbid::memory;
 use turbid::photons::beams::BeamMap;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{MapSettings, Maps, fill_counted_by_importance, forecast};
-use turbid::photons::{DirectionSettings, Directions, PhotonMap};
+use turbid::photons::{Guide, GuideSettings, PhotonMap};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Pixel, Streams, check_camera};
 use turbid::transport::Progress;
@@ -119,8 +119,8 @@ impl Request {
             };
             let film = match self.with {
                 With::Paths => {
-                    let directions = learn(scene, self.guide, streams, watch)?;
-                    fill(&Method::of_paths(scene, directions.as_ref()))?
+                    let guide = learn(scene, self.guide, streams, watch)?;
+                    fill(&Method::of_paths(scene, guide.as_ref()))?
                 }
                 With::Bidirectional => fill(&Method::Bidirectional(scene))?,
                 With::Light => fill(&Method::Light(scene))?,
@@ -151,11 +151,11 @@ pub fn learn(
     histories: Option<u64>,
     Streams { seed, replicate }: Streams,
     watch: &Watch,
-) -> turbid::Result<Option<Directions>> {
+) -> turbid::Result<Option<Guide>> {
     let Some(histories) = histories else { return Ok(None) };
-    watch.stage("directions", histories);
-    let settings = DirectionSettings { histories, seed, replicate, share: None };
-    Directions::learn(scene, &settings, watch).map(Some)
+    watch.stage("guide", histories);
+    let settings = GuideSettings { histories, seed, replicate, share: None };
+    Guide::learn(scene, &settings, watch).map(Some)
 }
 
 /// Three channels a pixel, row by row from the top.

@@ -18,7 +18,7 @@ use crate::light::{Light, LightSample};
 use crate::math::{FOUR_PI, Interval, Ray, cosine_pair, warp};
 use crate::medium::Medium;
 use crate::phase::PhaseFunction;
-use crate::photons::Directions;
+use crate::photons::Guide;
 use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
@@ -33,7 +33,7 @@ use glam::DVec3;
 /// that at 0.1. Lower values waste time, higher ones make variances that are harder to estimate.
 pub(super) const ROULETTE: f64 = 0.4;
 
-/// Weight, relative to the start's, above which paths led by directions are split. Each event may double it, and dozens do where light
+/// Weight, relative to the start's, above which paths led by photons are split. Each event may double it, and dozens do where light
 /// scatters so often: without a bound a few paths carry all. By 2 the error of pool, cognac and of what lies below a pane of glass is the
 /// same as without, and the sunbeams' a sixth less; by 4 and 8 tails are longer.
 const HEAVIEST: f64 = 2.0;
@@ -54,15 +54,16 @@ impl Rays {
     }
 }
 
-/// What is known of where light is, for paths to be led there: by one of these, since windows end what directions have led to bright
+/// What is known of where light is, for paths to be led there: by one of these, since windows end what photons have led to bright
 /// places. Every mean stays, whatever is known.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Guides<'a> {
     /// Weight windows, which split paths on their way to the lights and end them elsewhere: where light is found through many mean
     /// free paths.
     pub windows: Option<&'a WeightWindows>,
-    /// Where photons came from: where light is found by connections from few places only, behind glass and by way of mirrors.
-    pub directions: Option<&'a Directions>,
+    /// What photons tell: where light is found by connections from few places only, behind glass and by way of mirrors, and where it is
+    /// bright in a part of the media.
+    pub learned: Option<&'a Guide>,
 }
 
 /// What is called with the order, the class and the contribution of what reaches a path's origin.
@@ -81,7 +82,7 @@ pub(super) struct PathVisitor<'a> {
     /// The games by which it is split and ended.
     windowed: Option<Windowed<'a>>,
     /// Where light comes from.
-    directions: Option<&'a Directions>,
+    guide: Option<&'a Guide>,
     /// The weight above which it is split, in those that roulette begins at.
     heaviest: f64,
     /// Orders above which light is left out of lights that do not fill space, if it is: of those that rays meet, and of delta lights.
@@ -98,7 +99,7 @@ impl<'a> PathVisitor<'a> {
             first: Flags::NONE,
             end: f64::INFINITY,
             windowed: None,
-            directions: None,
+            guide: None,
             heaviest: f64::INFINITY,
             joined_above: None,
         }
@@ -313,17 +314,17 @@ impl Visitor for PathVisitor<'_> {
 
     #[inline(always)]
     fn lobe_in_medium(&self, position: DVec3) -> Option<&Lobe> {
-        self.directions?.in_medium(position)
+        self.guide?.in_medium(position)
     }
 
     #[inline(always)]
     fn lobe_on_surface(&self, position: DVec3, normal: DVec3) -> Option<&Lobe> {
-        self.directions?.on_surface(position, normal)
+        self.guide?.on_surface(position, normal)
     }
 
     #[inline(always)]
     fn brightness(&self) -> Option<&Brightness> {
-        self.directions?.brightness()
+        self.guide?.brightness()
     }
 
     /// Classes of paths that are split are not told apart: only what they bring in all is asked for.
@@ -343,7 +344,7 @@ impl Visitor for PathVisitor<'_> {
                 let medium = self.scene.medium(number);
                 let before = walker.ray.dir;
                 let albedo = medium.albedo(position);
-                let lobe = self.directions.and_then(|directions| directions.in_medium(position));
+                let lobe = self.guide.and_then(|guide| guide.in_medium(position));
                 let scattered = |towards: DVec3| {
                     let (one_minus_mu, one_plus_mu) = cosine_pair(before, towards);
                     let p = medium.phase().eval(one_minus_mu, one_plus_mu);
@@ -371,8 +372,7 @@ impl Visitor for PathVisitor<'_> {
                 let Surface::Lambertian(surface) = &self.scene.objects()[index].surface else { return };
                 let normals = found.hit.normals(walker.ray.dir);
                 let fraction = surface.eval(position, found.hit.uv);
-                let lobe =
-                    self.directions.and_then(|learned| learned.on_surface(position, normals.geometric));
+                let lobe = self.guide.and_then(|learned| learned.on_surface(position, normals.geometric));
                 let scattered = |towards: DVec3| {
                     let cosine = normals.cosine(towards);
                     let again = if planted(Fault::CosineTwice) { cosine } else { 1.0 };
@@ -552,8 +552,8 @@ fn follow<'a>(mut visitor: PathVisitor<'a>, start: Walker, guides: Guides<'a>, s
         Roulette::below(if guides.windows.is_some() { 0.0 } else { ROULETTE * start.weight.max() });
     let place = (start.ray.origin, start.interior);
     visitor.windowed = guides.windows.map(|windows| Windowed::new(windows, scene, place, start.weight));
-    if let Some(directions) = guides.directions {
-        visitor.directions = Some(directions);
+    if let Some(guide) = guides.learned {
+        visitor.guide = Some(guide);
         visitor.heaviest = HEAVIEST / ROULETTE;
     }
     walk(scene, start, roulette, limit, stream, &mut visitor);
@@ -614,7 +614,7 @@ pub fn fluence(
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    let lobe = guides.directions.and_then(|directions| directions.in_medium(position));
+    let lobe = guides.learned.and_then(|guide| guide.in_medium(position));
     let rays = aimed_fluence(scene, (position, lobe), orders, stream, &mut collect);
     let start = anywhere(scene, (position, lobe), stream);
     let mut collect = |order, _: Layer, value| collect(order, value);

@@ -1,10 +1,10 @@
 //! Photons: the record, the pass that stores them, the periodic cell, the tree over their positions, maps, and files of them.
 
 pub mod beams;
-mod directions;
 mod emit;
 mod ends;
 pub mod file;
+mod guide;
 pub mod importance;
 mod map;
 pub mod maps;
@@ -17,10 +17,10 @@ mod tallies;
 pub mod tree;
 
 pub use crate::transport::Flags;
-pub use directions::{DirectionSettings, Directions, MOST_HISTORIES};
 pub use emit::Emitter;
 pub(crate) use emit::from_light;
 pub use ends::{MOST_EVENTS, check_end};
+pub use guide::{Guide, GuideSettings, MOST_HISTORIES};
 pub use map::PhotonMap;
 pub use pass::{Ends, Histories, Ledger, Part, Pass, PassReport, Run, Storage, is_in, is_indirect, shoot};
 pub use record::{Photon, Photons};

@@ -7,7 +7,7 @@ use super::render::{Streams, extend};
 use crate::error::Result;
 use crate::integrators::mapper::{Mapper, Report};
 use crate::integrators::{Guides, Layers, path};
-use crate::photons::Directions;
+use crate::photons::Guide;
 use crate::rng::Stream;
 use crate::scene::{Camera, Orders, Scene};
 use crate::transport::Progress;
@@ -20,7 +20,7 @@ pub enum Method<'a> {
     /// The unbiased path tracer.
     Paths(&'a Scene),
     /// The unbiased path tracer, led to where photons came from.
-    Guided(&'a Scene, &'a Directions),
+    Guided(&'a Scene, &'a Guide),
     /// The unbiased path tracer whose paths are connected to subpaths from the lights.
     Bidirectional(&'a Scene),
     /// The unbiased light tracer: what the camera sees straight or through filters of light that scatters last on a diffuse
@@ -30,8 +30,8 @@ pub enum Method<'a> {
 
 impl<'a> Method<'a> {
     /// The path tracer, led by what photons told, if there is that.
-    pub fn of_paths(scene: &'a Scene, directions: Option<&'a Directions>) -> Self {
-        directions.map_or(Method::Paths(scene), |directions| Method::Guided(scene, directions))
+    pub fn of_paths(scene: &'a Scene, guide: Option<&'a Guide>) -> Self {
+        guide.map_or(Method::Paths(scene), |guide| Method::Guided(scene, guide))
     }
 
     /// A picture with so many samples per pixel.
@@ -77,8 +77,8 @@ impl<'a> Method<'a> {
                 })
             }
             Method::Paths(scene) => by_paths(film, scene, None, camera, samples, streams, progress),
-            Method::Guided(scene, directions) => {
-                by_paths(film, scene, Some(directions), camera, samples, streams, progress)
+            Method::Guided(scene, guide) => {
+                by_paths(film, scene, Some(guide), camera, samples, streams, progress)
             }
             Method::Bidirectional(scene) => {
                 extend_bidirectionally(film, scene, camera, samples, streams, progress)
@@ -96,14 +96,14 @@ impl<'a> Method<'a> {
 fn by_paths(
     film: &mut Film,
     scene: &Scene,
-    directions: Option<&Directions>,
+    guide: Option<&Guide>,
     camera: &Camera,
     samples: u64,
     streams: Streams,
     progress: &dyn Progress,
 ) -> Result<Report> {
     let interior = scene.interior_at(camera.position());
-    let guides = Guides { windows: None, directions };
+    let guides = Guides { windows: None, learned: guide };
     extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
         let mut layers = Layers::ZERO;
         let collect = |_, layer, value| layers[layer] += value;

@@ -71,7 +71,7 @@ fn pictures_have_the_same_bits_on_any_number_of_threads() {
     assert!(said.contains(" to the camera"), "{said}");
 }
 
-/// Where photons know no better directions a guided picture is that of paths, bit by bit, and says so; provenance has the guide of a picture
+/// Where photons know no better a guided picture is that of paths, bit by bit, and says so; provenance has the guide of a picture
 /// by paths. Other methods refuse it, but for a reference's sake.
 #[test]
 fn guided_pictures_are_those_of_paths_where_photons_know_no_better() {
@@ -94,7 +94,7 @@ fn guided_pictures_are_those_of_paths_where_photons_know_no_better() {
         "--with",
         "paths",
     ]);
-    assert!(!plain.contains("directions"), "{plain}");
+    assert!(!plain.contains("guide"), "{plain}");
     let (guided, file, notes) = render("guided.exr", &["--with", "paths", "--guide", "3000"]);
     assert!(paths == guided && notes.contains("--guide changes nothing"), "{notes}");
     assert!(String::from_utf8_lossy(&file).contains("\"guide\":3000"), "no provenance");

@@ -1,9 +1,9 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    along_rays, beams, cell, color, connected, directions, emitters, flights, fog, gathers, glass, ledger,
-    light, media, numbers, outputs, phase, planes, point_light, points, progressive, shading, slab, threads,
-    walls, weights,
+    along_rays, beams, cell, color, connected, emitters, flights, fog, gathers, glass, guided, ledger, light,
+    media, numbers, outputs, phase, planes, point_light, points, progressive, shading, slab, threads, walls,
+    weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -158,11 +158,11 @@ const fn inside(fault: Fault) -> Row {
         }
         Fault::LobeForgotten => {
             ("learned directions weighted as though they were not", "guided_paths_find_as_much", |_| {
-                directions::guided_paths_find_as_much()
+                guided::guided_paths_find_as_much()
             })
         }
         Fault::PartLost => ("one part of a heavy path lost", "guided_paths_stay_light", |_| {
-            directions::guided_paths_stay_light()
+            guided::guided_paths_stay_light()
         }),
         Fault::LedFlightsForgotten => {
             ("flights led to bright places keep their weight", "led_flights_are_as_many", |_| {

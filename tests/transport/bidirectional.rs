@@ -21,7 +21,7 @@ use turbid::light::{Beam, Faces, Light, Section, Spot, Sun, VolumeSource};
 use turbid::math::{Asymmetry, Ray};
 use turbid::medium::{Cloud, CloudShape, Density, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::Phase;
-use turbid::photons::{DirectionSettings, Directions};
+use turbid::photons::{Guide, GuideSettings};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Filter as PixelFilter, Interior, Object, Orders, Region, Scene, SceneParts};
 use turbid::sensor::{Film, Method, Streams};
@@ -79,10 +79,10 @@ fn agree(what: &str, scene: &Scene, least: usize) {
         bidirectional::classes(scene, ray, None, interior, Orders::ALL, stream, add);
     });
     same(&format!("connected, {what}"), &paths, &connected, least);
-    let settings = DirectionSettings { histories: 20_000, seed: 3, replicate: 0, share: Some(0.5) };
-    let directions = Directions::learn(scene, &settings, &NoProgress).unwrap();
-    assert!(directions.counts().iter().any(|[_, used]| *used > 4), "{what}: {:?}", directions.counts());
-    let guides = Guides { windows: None, directions: Some(&directions) };
+    let settings = GuideSettings { histories: 20_000, seed: 3, replicate: 0, share: Some(0.5) };
+    let guide = Guide::learn(scene, &settings, &NoProgress).unwrap();
+    assert!(guide.counts().iter().any(|[_, used]| *used > 4), "{what}: {:?}", guide.counts());
+    let guides = Guides { windows: None, learned: Some(&guide) };
     let guided = batches(3, &|stream, add| {
         let ray = ray(stream);
         path::guided_classes(scene, (ray, interior), Orders::ALL, guides, stream, add);

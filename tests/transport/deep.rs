@@ -78,7 +78,7 @@ fn enough_paths_have_their_error() {
 
 fn guided(scene: &Scene, quantity: &Quantity, n: u64, seed: u64) -> Moments {
     let windows = WeightWindows::new(scene).unwrap();
-    let guides = Guides { windows: Some(&windows), directions: None };
+    let guides = Guides { windows: Some(&windows), learned: None };
     let moments = numbers(n, seed, |s| sample_guided(scene, quantity, Orders::ALL, guides, s).0[0]);
     let relative = moments.std_error() / moments.mean();
     assert!(relative < 0.05, "windows do not help: {relative}");
@@ -122,7 +122,7 @@ fn windows_end_where_a_colored_body_absorbs_everything() {
     let scene = bounded(vec![coated(1.0, 0.0), coated(0.3, 0.9)], vec![], vec![lamp]);
     let quantity = Quantity::Fluence(DVec3::new(0.2, 0.1, 0.05));
     let windows = WeightWindows::new(&scene).unwrap();
-    let guides = Guides { windows: Some(&windows), directions: None };
+    let guides = Guides { windows: Some(&windows), learned: None };
     let by_windows = histories(1 << 17, 36, |s| sample_guided(&scene, &quantity, Orders::ALL, guides, s).0);
     let by_paths = paths(&scene, quantity, Orders::ALL, 1 << 17, 37);
     for (channel, (a, b)) in by_windows.iter().zip(&by_paths).enumerate() {

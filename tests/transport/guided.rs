@@ -1,7 +1,7 @@
 //! Guided paths: against the exact slab, in a furnace, and what they are worth. Each class and order, by every light and through every
 //! body, is beside bidirectional paths.
 
-use crate::checks::directions::{
+use crate::checks::guided::{
     below_a_pane, guided_paths_find_as_much, guided_paths_stay_light, learned, of_the_table,
 };
 use crate::checks::slab::{exact, referee};
@@ -20,14 +20,14 @@ use turbid::light::Faces;
 use turbid::math::Ray;
 use turbid::medium::Homogeneous;
 use turbid::phase::{Isotropic, Phase, Tabulated};
-use turbid::photons::{DirectionSettings, Directions, MOST_HISTORIES};
+use turbid::photons::{Guide, GuideSettings, MOST_HISTORIES};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Region};
 use turbid::sensor::{Camera, Film, Filter, Method, Streams, View, sample_guided};
 use turbid::transport::NoProgress;
 
-fn led(directions: &Directions) -> Guides<'_> {
-    Guides { windows: None, directions: Some(directions) }
+fn led(guide: &Guide) -> Guides<'_> {
+    Guides { windows: None, learned: Some(guide) }
 }
 
 #[test]
@@ -44,10 +44,10 @@ fn they_stay_light() {
 #[test]
 fn they_vary_less() {
     let scene = below_a_pane(0.0, 2.0);
-    let directions = learned(&scene, 100_000, None);
+    let guide = learned(&scene, 100_000, None);
     let variance = |guides, seed| of_the_table(&scene, guides, 1 << 17, seed).variance();
-    let (alone, guided) = (variance(Guides::default(), 1), variance(led(&directions), 2));
-    assert!(20.0 * guided < alone, "{alone} {guided} {:?}", directions.counts());
+    let (alone, guided) = (variance(Guides::default(), 1), variance(led(&guide), 2));
+    assert!(20.0 * guided < alone, "{alone} {guided} {:?}", guide.counts());
 }
 
 /// The exact slab, whose cell repeats, with half of all directions learned.
@@ -56,11 +56,11 @@ fn the_exact_slab() {
     let (tau, albedo) = (2.0, 0.9);
     for (how, seed) in [(Incidence::Beam(0.5), 1), (Incidence::Diffuse, 2)] {
         let (scene, known) = (slab(tau, albedo, 0.0, how), referee(tau, albedo, how));
-        let directions = learned(&scene, 20_000, Some(0.5));
-        assert!(directions.counts()[0][1] > 8);
+        let guide = learned(&scene, 20_000, Some(0.5));
+        assert!(guide.counts()[0][1] > 8);
         for depth in [0.1, 1.0, 1.9] {
             let moments = numbers(1 << 17, seed, |stream| {
-                sample_guided(&scene, &at_depth(depth), Orders::ALL, led(&directions), stream).0[0]
+                sample_guided(&scene, &at_depth(depth), Orders::ALL, led(&guide), stream).0[0]
             });
             let value = exact(known.fluence(depth).unwrap());
             verdict::agrees(&format!("{how:?}, depth {depth}"), &moments, value, 0.1 * value.0, seed);
@@ -78,12 +78,12 @@ fn isotropic_light_stays_isotropic() {
     let scene = bounded(vec![fog], vec![(sphere(DVec3::new(0.3, 0.2, 0.0), 0.3), white)], vec![light]);
     let by = |share| learned(&scene, 30_000, share);
     assert_eq!(by(None).counts().map(|[_, used]| used), [0, 0]);
-    let directions = by(Some(0.5));
-    assert!(directions.counts().iter().all(|[_, used]| *used > 0));
+    let guide = by(Some(0.5));
+    assert!(guide.counts().iter().all(|[_, used]| *used > 0));
     let ray = Ray::new(DVec3::new(0.0, 0.0, 0.8), DVec3::new(0.2, 0.3, -0.8).normalize());
     let moments = numbers(1 << 16, 3, |stream| {
         let mut sum = 0.0;
-        radiance(&scene, (ray, 0), Orders::ALL, led(&directions), stream, |_, value| sum += value[0]);
+        radiance(&scene, (ray, 0), Orders::ALL, led(&guide), stream, |_, value| sum += value[0]);
         sum
     });
     // The irradiance is 1.
@@ -102,8 +102,8 @@ fn fluences_by_lights_of_every_extent() {
     let lamp = emitting_sphere(DVec3::new(0.3, 0.6, 0.4), 0.2);
     for (lights, seed) in [(vec![lamp.clone()], 1), (vec![lamp, volume_source(block)], 3)] {
         let scene = bounded(vec![fog.clone(), ember.clone()], Vec::new(), lights);
-        let directions = learned(&scene, 20_000, Some(0.5));
-        assert!(directions.counts()[0][1] > 4);
+        let guide = learned(&scene, 20_000, Some(0.5));
+        assert!(guide.counts()[0][1] > 4);
         for at in [DVec3::new(0.1, 0.3, 0.2), DVec3::new(-0.4, -0.5, -0.3), DVec3::new(0.4, 0.25, -0.1)] {
             let by = |guides: Guides<'_>, seed| {
                 numbers(1 << 16, seed, |stream| {
@@ -111,13 +111,7 @@ fn fluences_by_lights_of_every_extent() {
                 })
             };
             let paths = by(Guides::default(), seed);
-            verdict::agree(
-                &format!("{at}"),
-                &by(led(&directions), seed + 1),
-                &paths,
-                0.1 * paths.mean(),
-                seed,
-            );
+            verdict::agree(&format!("{at}"), &by(led(&guide), seed + 1), &paths, 0.1 * paths.mean(), seed);
         }
     }
 }
@@ -132,7 +126,7 @@ fn a_phase_function_that_sends_nothing_back() {
     let (low, high) = (DVec3::splat(-1.0), DVec3::splat(1.0));
     let fog = Region { shape: cuboid(low, high), medium: fog.into() };
     let scene = bounded(vec![fog], Vec::new(), vec![emitting_sphere(DVec3::new(0.3, 0.2, 0.1), 0.2)]);
-    let directions = learned(&scene, 20_000, Some(0.5));
+    let guide = learned(&scene, 20_000, Some(0.5));
     let ray = Ray::new(DVec3::new(-0.5, 0.3, 0.8), DVec3::new(0.3, -0.1, -0.9).normalize());
     let by = |guides: Guides<'_>, seed| {
         numbers(1 << 17, seed, |stream| {
@@ -142,7 +136,7 @@ fn a_phase_function_that_sends_nothing_back() {
         })
     };
     let paths = by(Guides::default(), 1);
-    verdict::agree("forwards", &by(led(&directions), 2), &paths, 0.1 * paths.mean(), 2);
+    verdict::agree("forwards", &by(led(&guide), 2), &paths, 0.1 * paths.mean(), 2);
 }
 
 /// The same pictures on any number of threads, and in parts.
@@ -155,10 +149,10 @@ fn the_same_bits_on_any_number_of_threads() {
     let film = |threads: usize, calls: &[u64]| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let directions = learned(&scene, 30_000, None);
+            let guide = learned(&scene, 30_000, None);
             let mut film = Film::new(8, 8);
             for samples in calls {
-                let method = Method::Guided(&scene, &directions);
+                let method = Method::Guided(&scene, &guide);
                 let streams = Streams { seed: 3, replicate: 1 };
                 method.extend(&mut film, &camera, *samples, streams, &NoProgress).unwrap();
             }
@@ -173,8 +167,8 @@ fn the_same_bits_on_any_number_of_threads() {
 fn what_cannot_be_learned_from() {
     let scene = below_a_pane(0.0, 2.0);
     let refused = |histories, share| {
-        let settings = DirectionSettings { histories, seed: 1, replicate: 0, share };
-        Directions::learn(&scene, &settings, &NoProgress).unwrap_err().to_string()
+        let settings = GuideSettings { histories, seed: 1, replicate: 0, share };
+        Guide::learn(&scene, &settings, &NoProgress).unwrap_err().to_string()
     };
     for (histories, share) in
         [(0, None), (MOST_HISTORIES + 1, None), (9, Some(0.0)), (9, Some(1.0)), (9, Some(f64::NAN))]
@@ -182,16 +176,16 @@ fn what_cannot_be_learned_from() {
         let text = refused(histories, share);
         assert!(text.contains("allowed"), "{text}");
     }
-    let settings = DirectionSettings { histories: MOST_HISTORIES, seed: 1, replicate: 0, share: None };
+    let settings = GuideSettings { histories: MOST_HISTORIES, seed: 1, replicate: 0, share: None };
     let cloud = slab(20.0, 1.0, 0.0, Incidence::Beam(1.0));
-    let text = Directions::learn(&cloud, &settings, &NoProgress).unwrap_err().to_string();
+    let text = Guide::learn(&cloud, &settings, &NoProgress).unwrap_err().to_string();
     assert!(text.contains("would store") && text.contains("allowed: at most"), "{text}");
     let empty = bounded(Vec::new(), Vec::new(), vec![isotropic(sphere(DVec3::ZERO, 1.0), Faces::Both)]);
-    let directions = learned(&empty, 1000, None);
-    assert_eq!(directions.counts().map(|[_, used]| used), [0, 0]);
+    let guide = learned(&empty, 1000, None);
+    assert_eq!(guide.counts().map(|[_, used]| used), [0, 0]);
     let mut stream = Stream::new(1, Purpose::Paths, 0, 0);
     let ray = (Ray::new(DVec3::ZERO, DVec3::X), 0);
     let mut sum = Spectrum::ZERO;
-    radiance(&empty, ray, Orders::ALL, led(&directions), &mut stream, |_, value| sum += value);
+    radiance(&empty, ray, Orders::ALL, led(&guide), &mut stream, |_, value| sum += value);
     assert_eq!(sum, Spectrum::grey(FRAC_1_PI));
 }

@@ -3,7 +3,7 @@
 use crate::{Round, WIDTH, lines_of, scenes, timed};
 use anyhow::{Context, Result};
 use std::io::Write;
-use turbid::photons::{DirectionSettings, Directions};
+use turbid::photons::{Guide, GuideSettings};
 use turbid::scene::{Camera, Scene, SceneFile};
 use turbid::sensor::{Film, Method, Streams};
 use turbid::transport::NoProgress;
@@ -47,12 +47,12 @@ pub fn compare(out: &mut impl Write, wanted: &dyn Fn(&str) -> bool, count: u64) 
             let mut spent = None;
             guided.push(timed(|| {
                 let start = cpu_time::ThreadTime::now();
-                let settings = DirectionSettings { histories: HISTORIES, seed: 1, replicate, share: None };
-                let directions = Directions::learn(&scene, &settings, &NoProgress)?;
-                led = directions.counts();
-                flights = directions.brightness().map_or(0.0, |brightness| brightness.share);
+                let settings = GuideSettings { histories: HISTORIES, seed: 1, replicate, share: None };
+                let guide = Guide::learn(&scene, &settings, &NoProgress)?;
+                led = guide.counts();
+                flights = guide.brightness().map_or(0.0, |brightness| brightness.share);
                 spent = Some(start.elapsed().as_secs_f64());
-                picture(Method::Guided(&scene, &directions), Streams { seed: 2, ..streams })
+                picture(Method::Guided(&scene, &guide), Streams { seed: 2, ..streams })
             })?);
             learning += spent.unwrap_or_default() / count as f64;
         }

@@ -68,7 +68,8 @@ pub fn compare(out: &mut impl Write, rounds: u64) -> Result<()> {
             Err(why) => writeln!(out, "Mitsuba {variant} is not beside it: {why:#}.")?,
         }
     }
-    let mut rates: Vec<(String, Vec<f64>)> = peers.iter().map(|(name, _)| (name.clone(), Vec::new())).collect();
+    let mut rates: Vec<(String, Vec<f64>)> =
+        peers.iter().map(|(name, _)| (name.clone(), Vec::new())).collect();
     rates.push(("turbid, stored".into(), Vec::new()));
     rates.push(("turbid in fog, stored".into(), Vec::new()));
     for round in 0..rounds {

@@ -6,6 +6,7 @@ a lamp that reflects; any other is the file of this name) and answers each with 
 output as text, one line, and then its 128 x 128 x 3 radiances as little-endian float32.
 """
 
+import os
 import sys
 import time
 
@@ -84,6 +85,9 @@ def scene(name):
 
 
 def main():
+    # What is rendered for long tells of it on the standard output.
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
     scenes = {}
     for line in sys.stdin:
         name, samples, seed = line.split()
@@ -92,8 +96,8 @@ def main():
         start = time.process_time()
         image = np.array(mi.render(scenes[name], spp=int(samples), seed=int(seed)), dtype="<f4")[..., :3]
         seconds = time.process_time() - start
-        sys.stdout.buffer.write(f"{seconds!r}\n".encode() + image.tobytes())
-        sys.stdout.buffer.flush()
+        answers.write(f"{seconds!r}\n".encode() + image.tobytes())
+        answers.flush()
 
 
 main()

@@ -107,7 +107,7 @@ impl Bench {
         let settings =
             PathSettings { samples, seed: self.seed, replicate: self.replicate(), orders: Orders::ALL };
         let windows = WeightWindows::new(scene)?;
-        let guides = Guides { windows: Some(&windows), directions: None };
+        let guides = Guides { windows: Some(&windows), learned: None };
         Ok(by_guided_paths(scene, &settings, guides, &NoProgress)?)
     }
 

@@ -10,7 +10,7 @@ use std::ops::Range;
 use turbid::Spectrum;
 use turbid::integrators::{Guides, Layer, Layers, Splat, light_tracing, path};
 use turbid::math::Ray;
-use turbid::photons::{DirectionSettings, Directions, Emitter};
+use turbid::photons::{Emitter, Guide, GuideSettings};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Orders, Scene};
 use turbid::sensor::{Film, Streams, extend};
@@ -159,7 +159,7 @@ pub struct Unbiased<'a> {
     /// Random numbers.
     pub streams: Streams,
     /// Where photons came from, if paths are led there.
-    directions: Option<Directions>,
+    guide: Option<Guide>,
     /// What paths have found.
     film: Film,
     /// What light tracing has found, times the number of photons.
@@ -170,7 +170,7 @@ impl<'a> Unbiased<'a> {
     /// A picture without any sample.
     ///
     /// # Errors
-    /// those of [`ByLight::check`] and of [`Directions::learn`]
+    /// those of [`ByLight::check`] and of [`Guide::learn`]
     pub fn new(
         by_light: ByLight,
         scene: &'a Scene,
@@ -181,10 +181,10 @@ impl<'a> Unbiased<'a> {
         let film = Film::new(camera.width(), camera.height());
         let found = vec![Layers::ZERO; film.pixels().len()];
         let Streams { seed, replicate } = streams;
-        let settings = DirectionSettings { histories: by_light.guide, seed, replicate, share: None };
-        let learn = || Directions::learn(scene, &settings, &NoProgress);
-        let directions = (by_light.guide > 0).then(learn).transpose()?;
-        Ok(Unbiased { by_light, scene, camera, streams, directions, film, found })
+        let settings = GuideSettings { histories: by_light.guide, seed, replicate, share: None };
+        let learn = || Guide::learn(scene, &settings, &NoProgress);
+        let guide = (by_light.guide > 0).then(learn).transpose()?;
+        Ok(Unbiased { by_light, scene, camera, streams, guide, film, found })
     }
 
     /// Samples a pixel so far.
@@ -199,7 +199,7 @@ impl<'a> Unbiased<'a> {
     pub fn extend(&mut self, samples: u64, progress: &dyn Progress) -> anyhow::Result<()> {
         let Unbiased { by_light, scene, camera, streams, .. } = *self;
         let (first, interior) = (self.samples(), scene.interior_at(camera.position()));
-        let guides = Guides { windows: None, directions: self.directions.as_ref() };
+        let guides = Guides { windows: None, learned: self.guide.as_ref() };
         extend(&mut self.film, camera, samples, streams, progress, |ray, stream, n: &mut u64| {
             *n += 1;
             by_light.rest(scene, (ray, interior), guides, stream)

@@ -307,7 +307,7 @@ impl Setting {
 pub enum Rival {
     /// Paths that nothing leads.
     Paths,
-    /// Paths whose directions follow where photons came from, as far as that gains anything.
+    /// Paths whose directions and distances follow photons, as far as that gains anything.
     Guided,
 }
 

@@ -94,6 +94,8 @@ pub struct Guided {
     pub paths: Paths,
     /// Share of the cells whose directions are used, by batch.
     pub led: Vec<f64>,
+    /// Share of the flights that are led to bright places, by batch.
+    pub flights: Vec<f64>,
     /// CPU seconds of learning on this machine, by batch.
     pub learning: Vec<f64>,
 }
@@ -194,7 +196,8 @@ impl Data {
             data.guided.push(Guided {
                 paths: paths(Rival::Guided, field, &exact, cells)?,
                 led: cells.values(&group, "cells led")?,
-                learning: cells.seconds(&group, "learning directions"),
+                flights: cells.values(&group, "flights led")?,
+                learning: cells.seconds(&group, "learning"),
             });
         }
         Ok(data)

@@ -6,7 +6,7 @@ use turbid::Spectrum;
 use turbid::estimators::Estimate;
 use turbid::estimators::boundary::Boundary;
 use turbid::integrators::Guides;
-use turbid::photons::{DirectionSettings, Directions, Histories, PhotonMap, is_in, shoot};
+use turbid::photons::{Guide, GuideSettings, Histories, PhotonMap, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity};
 use turbid::sensor::sample_guided;
@@ -26,7 +26,7 @@ fn paths(settings: &Settings) -> u64 {
     settings.photons(256, 4096).max(16)
 }
 
-/// Histories that directions of one batch are learned from.
+/// Histories that one batch learns from.
 fn learned(settings: &Settings) -> u64 {
     settings.photons(4096, 32_768).max(100)
 }
@@ -155,23 +155,20 @@ fn measure_paths(
     let (scene, replicate) = (field.setup.scene()?, cell.stream("tradeoff"));
     let mut output = CellOutput::new();
     let paths = paths(settings);
-    let directions = match rival {
+    let guide = match rival {
         Rival::Paths => None,
         Rival::Guided => {
-            let asked = DirectionSettings {
-                histories: learned(settings),
-                seed: settings.seed,
-                replicate,
-                share: None,
-            };
-            let directions =
-                output.time("learning directions", |_| Directions::learn(&scene, &asked, &NoProgress))?;
-            let [cells, led] = directions.counts()[0];
+            let asked =
+                GuideSettings { histories: learned(settings), seed: settings.seed, replicate, share: None };
+            let guide = output.time("learning", |_| Guide::learn(&scene, &asked, &NoProgress))?;
+            let [cells, led] = guide.counts()[0];
             output.push(rival.group(field), "cells led", led as f64 / cells.max(1) as f64);
-            Some(directions)
+            let flights = guide.brightness().map_or(0.0, |brightness| brightness.share);
+            output.push(rival.group(field), "flights led", flights);
+            Some(guide)
         }
     };
-    let guides = Guides { directions: directions.as_ref(), ..Guides::default() };
+    let guides = Guides { learned: guide.as_ref(), ..Guides::default() };
     for layer in 0..LAYERS {
         let depth = field.depth(layer);
         let quantity = Quantity::Fluence(field.setup.body.middle(depth));

@@ -285,6 +285,7 @@ fn rivals(data: &Data) -> Table {
         vec![
             paths.field.title.to_string(),
             format!("{:.0}", percent(mean(&guided.led))),
+            format!("{:.0}", percent(mean(&guided.flights))),
             number(mean(&paths.variance)),
             number(mean(&guided.paths.variance)),
             number(mean(&paths.rays)),
@@ -298,6 +299,7 @@ fn rivals(data: &Data) -> Table {
     let columns = [
         "fog",
         "cells led [%]",
+        "flights led [%]",
         "relative variance of a path sample",
         "of a guided one",
         "rays of a path sample",

@@ -60,9 +60,9 @@ pub struct Measure {
     /// paths.
     #[arg(long)]
     weight_windows: bool,
-    /// Path guiding: send out this many photons, such as 2e5, and lead paths to where they came from: for caustics, and light that comes
-    /// by way of mirrors or few bright places. Unbiased whatever the photons say; where they say little, paths are left as they are. Only
-    /// with paths, and not with --weight-windows.
+    /// Path guiding: send out this many photons, such as 2e5, and lead paths to where they came from, and flights through homogeneous media
+    /// to where they are: for caustics, and light that comes by way of mirrors or is bright in few places. Unbiased whatever the photons
+    /// say; where they say little, paths are left as they are. Only with paths, and not with --weight-windows.
     #[arg(long, value_name = "N", conflicts_with = "weight_windows", value_parser = whole::<u64>(1..=MOST_HISTORIES))]
     guide: Option<u64>,
     /// Paths a sensor, or a bin of one, such as 1e6.
@@ -391,9 +391,9 @@ impl Measure {
         let windows = self.weight_windows.then(|| WeightWindows::new(scene)).transpose();
         let windows = windows.with_context(|| self.source.name())?;
         let streams = Streams { seed: self.seed, replicate: 0 };
-        let directions = self.guide.map(|histories| learn(scene, histories, streams)).transpose();
-        let directions = directions.with_context(|| self.source.name())?;
-        let guides = Guides { windows: windows.as_ref(), directions: directions.as_ref() };
+        let guide = self.guide.map(|histories| learn(scene, histories, streams)).transpose();
+        let guide = guide.with_context(|| self.source.name())?;
+        let guides = Guides { windows: windows.as_ref(), learned: guide.as_ref() };
         let bar = Bar::new(self.samples.saturating_mul(bins));
         let measurements = match self.with {
             With::Bidirectional => by_bidirectional_paths(scene, &settings, &bar),

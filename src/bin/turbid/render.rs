@@ -85,8 +85,8 @@ pub struct Render {
     #[command(flatten)]
     compared: Compared,
     /// Path guiding: send out this many photons, such as 2e5, and lead paths, those of --with paths and those of --compare, to where they
-    /// came from: for caustics, and light that comes by way of mirrors or few bright places. Unbiased whatever the photons say; where they
-    /// say little, paths are left as they are.
+    /// came from, and flights through homogeneous media to where they are: for caustics, and light that comes by way of mirrors or is bright
+    /// in few places. Unbiased whatever the photons say; where they say little, paths are left as they are.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1..=MOST_HISTORIES))]
     guide: Option<u64>,
     #[command(flatten)]
@@ -248,8 +248,8 @@ impl Render {
             }
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
                 let learned = |histories| stages.time(LEARNING, || learn(&scene, histories, streams));
-                let directions = self.guide.map(learned).transpose()?;
-                let method = Method::of_paths(&scene, directions.as_ref());
+                let guide = self.guide.map(learned).transpose()?;
+                let method = Method::of_paths(&scene, guide.as_ref());
                 Ok((self.fill(film, stages, left, &method, (&camera, streams))?, None))
             }),
             With::Bidirectional => self.repeat(&camera, |streams, stages, left, film| {
@@ -338,8 +338,8 @@ impl Render {
         // The repetition that the picture does not have.
         let streams = Streams { seed: self.seed, replicate: made.repetitions };
         let reference = on_threads(self.threads, || {
-            let directions = self.guide.map(|histories| learn(scene, histories, streams)).transpose()?;
-            let method = Method::of_paths(scene, directions.as_ref());
+            let guide = self.guide.map(|histories| learn(scene, histories, streams)).transpose()?;
+            let method = Method::of_paths(scene, guide.as_ref());
             self.compared.reference(&method, camera, &made.film, streams)
         })?;
         let error = match self.with {

@@ -12,7 +12,7 @@ use turbid::photons::maps::MapReport;
 pub const MAPS: &str = "maps";
 
 /// The stage that learns where light comes from.
-pub const LEARNING: &str = "directions";
+pub const LEARNING: &str = "guide";
 
 /// Prints what a picture took.
 pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {

@@ -1,4 +1,4 @@
-//! Directions that light comes from, learned from photons: path guiding.
+//! Where light comes from, and where it is bright, learned from photons: path guiding.
 //!
 //! A path finds a small lamp by connections, and what the lamp throws on a wall by luck: where a mirror, a lens or a gap leaves one
 //! bright patch, one direction in thousands brings all the light. Photons know. Those that paths do not connect to, all but direct
@@ -6,7 +6,8 @@
 //! surfaces by the axis that their normal is next to; every cell learns a histogram of the directions that its photons came from
 //! ([`Lobe`]), and how much of it to mix with the surface's or phase function's own directions, so that the second moment of what
 //! a path brings is least (`choice`): none at all, where it gains too little. A mixture of known density keeps every mean, whatever
-//! was learned.
+//! was learned. Distances are led by how bright all photons say that it is in media and on surfaces ([`Brightness`]), by a share of
+//! flights that is the same everywhere (`distances`).
 //!
 //! # Source
 //! Jensen 1995, "Importance driven path tracing using the photon map"; Vorba et al. 2014; Mueller et al. 2017; in media Herholz et
@@ -41,23 +42,23 @@ const MOST_PHOTONS: f64 = 8e6;
 /// Histories that say how many photons others will store.
 const PILOT: u64 = 1000;
 
-/// Which photons directions are learned from.
+/// Which photons are learned from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DirectionSettings {
+pub struct GuideSettings {
     /// Histories, 1 to [`MOST_HISTORIES`].
     pub histories: u64,
     /// Seed of the whole computation.
     pub seed: u64,
     /// Which independent repetition.
     pub replicate: u64,
-    /// The share of what was learned in every cell, in (0, 1), in place of the one that is best by what the photons say: for the
-    /// laboratory.
+    /// The share of what was learned, in every cell and of all flights, in (0, 1), in place of the one that is best by what the photons
+    /// say: for the laboratory.
     pub share: Option<f64>,
 }
 
-/// Where light comes from, about every place of a scene.
+/// Where light comes from, about every place of a scene, and where it is bright.
 #[derive(Debug)]
-pub struct Directions {
+pub struct Guide {
     media: Cells,
     /// By the axis that normals are next to, and their sign.
     surfaces: [Cells; 6],
@@ -78,14 +79,14 @@ impl Storage for Everything {
     }
 }
 
-impl Directions {
+impl Guide {
     /// Learns from photons; the same bits on any number of threads.
     ///
     /// # Errors
     /// `Error::OutOfRange` for a number of histories or a share that is not allowed; `Error::Scene` where they would store more than
     /// 8,000,000 photons; those of [`Run::pass`]
-    pub fn learn(scene: &Scene, settings: &DirectionSettings, progress: &dyn Progress) -> Result<Self> {
-        let DirectionSettings { histories, seed, replicate, share } = *settings;
+    pub fn learn(scene: &Scene, settings: &GuideSettings, progress: &dyn Progress) -> Result<Self> {
+        let GuideSettings { histories, seed, replicate, share } = *settings;
         if let Some(share) = share.filter(|share| !(*share > 0.0 && *share < 1.0)) {
             return Err(Error::out_of_range("the share of learned directions", share, "above 0 and below 1"));
         }
@@ -121,7 +122,7 @@ impl Directions {
             // Different for each part of each repetition, however large the numbers of these are.
             let replicate = replicate.wrapping_mul(PARTS).wrapping_add(part);
             let histories = Histories { count, seed, replicate, max_order: None };
-            let run = Run { purpose: Purpose::Directions, ..Run::new(scene, &emitter, histories) };
+            let run = Run { purpose: Purpose::Guide, ..Run::new(scene, &emitter, histories) };
             let pass = run.pass(&Everything, progress)?;
             let part = part as usize;
             for photon in pass.photons() {
@@ -135,7 +136,7 @@ impl Directions {
             }
         }
         let period = scene.periodic_cell().map(|cell| cell.side);
-        Ok(Directions {
+        Ok(Guide {
             media: Cells::new(media, share, &medium_at),
             surfaces: surfaces.map(|arrivals| Cells::new(arrivals, share, &medium_at)),
             brightness: distances::learned(scene, (&lit.0, &lit.1), period, share, (seed, replicate)),
@@ -156,7 +157,7 @@ impl Directions {
         self.surfaces[face(normal.as_vec3().as_dvec3())].at(self.place(position))
     }
 
-    /// How bright places are, if flights are to end by it.
+    /// How bright places are, if flights are led by it.
     #[inline]
     pub fn brightness(&self) -> Option<&Brightness> {
         self.brightness.as_ref()
@@ -166,6 +167,11 @@ impl Directions {
     pub fn counts(&self) -> [[usize; 2]; 2] {
         let add = |[cells, used]: [usize; 2], more: [usize; 2]| [cells + more[0], used + more[1]];
         [self.media.counts(), self.surfaces.iter().map(Cells::counts).fold([0, 0], add)]
+    }
+
+    /// Whether anything that was learned is used.
+    pub fn is_used(&self) -> bool {
+        self.brightness.is_some() || self.counts().iter().any(|[_, used]| *used > 0)
     }
 
     fn place(&self, position: DVec3) -> DVec3 {

@@ -10,7 +10,7 @@ use turbid::geometry::Shape;
 use turbid::integrators::Guides;
 use turbid::light::{Light, Sun};
 use turbid::math::Ray;
-use turbid::photons::{DirectionSettings, Directions};
+use turbid::photons::{Guide, GuideSettings};
 use turbid::scene::{Interior, Object, Orders, Quantity, Scene, SceneParts};
 use turbid::sensor::sample_guided;
 use turbid::stats::Moments;
@@ -44,17 +44,17 @@ pub fn of_the_table(scene: &Scene, guides: Guides<'_>, n: u64, seed: u64) -> Mom
 }
 
 /// What the photons of so many histories say.
-pub fn learned(scene: &Scene, histories: u64, share: Option<f64>) -> Directions {
-    let settings = DirectionSettings { histories, seed: 5, replicate: 0, share };
-    Directions::learn(scene, &settings, &NoProgress).unwrap()
+pub fn learned(scene: &Scene, histories: u64, share: Option<f64>) -> Guide {
+    let settings = GuideSettings { histories, seed: 5, replicate: 0, share };
+    Guide::learn(scene, &settings, &NoProgress).unwrap()
 }
 
 /// As much as paths that nothing leads find, in isotropic fog and in one that scatters forwards.
 pub fn guided_paths_find_as_much() {
     for (g, seed) in [(0.0, 1), (0.7, 3)] {
         let scene = below_a_pane(g, 4.0);
-        let directions = learned(&scene, 100_000, None);
-        let guides = Guides { windows: None, directions: Some(&directions) };
+        let guide = learned(&scene, 100_000, None);
+        let guides = Guides { windows: None, learned: Some(&guide) };
         let guided = of_the_table(&scene, guides, 1 << 15, seed);
         let paths = of_the_table(&scene, Guides::default(), 1 << 20, seed + 1);
         verdict::agree(&format!("g {g}"), &guided, &paths, 0.2 * paths.mean(), seed);
@@ -66,8 +66,8 @@ pub fn guided_paths_find_as_much() {
 pub fn guided_paths_stay_light() {
     let (tau, how) = (12.0, Incidence::Beam(1.0));
     let scene = slab(tau, 1.0, 0.0, how);
-    let directions = learned(&scene, 10_000, Some(0.5));
-    let guides = Guides { windows: None, directions: Some(&directions) };
+    let guide = learned(&scene, 10_000, Some(0.5));
+    let guides = Guides { windows: None, learned: Some(&guide) };
     let moments =
         numbers(1 << 15, 1, |stream| sample_guided(&scene, &at_depth(6.0), Orders::ALL, guides, stream).0[0]);
     let value = exact(referee(tau, 1.0, how).fluence(6.0).unwrap());

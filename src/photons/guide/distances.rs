@@ -94,7 +94,7 @@ fn best(scene: &Scene, media: &[Lit], parts: &[Brightness], (seed, replicate): (
     let mut moments = [0.0; 1 + SHARES.len()];
     for number in 0..FLIGHTS.min(media.len()) {
         // Histories are numbered from 0.
-        let mut stream = Stream::new(seed, Purpose::Directions, replicate, u64::MAX - number as u64);
+        let mut stream = Stream::new(seed, Purpose::Guide, replicate, u64::MAX - number as u64);
         let position = media[number * media.len() / FLIGHTS.min(media.len())].position;
         let ray = Ray::new(position, warp::square_to_sphere(stream.pair()).normalize());
         let hit = scene.hit(&ray, None);
