@@ -63,7 +63,8 @@ impl BrightnessGrid {
         (z * SIDE + y) * SIDE + x
     }
 
-    fn at(&self, p: DVec3) -> f64 {
+    /// How bright it is about a place.
+    pub fn at(&self, p: DVec3) -> f64 {
         self.values[self.cell(p)]
     }
 }

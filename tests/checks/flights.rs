@@ -173,7 +173,7 @@ pub fn led_flights_are_as_many() {
         ("a deep slab", slab(2e4), level, vec![2e-5, 2e-4], grey),
     ];
     for (seed, (what, scene, dir, distances, weight)) in (1..).zip(cases) {
-        let size = distances[0].min(1.0);
+        let size = f64::min(distances[0], 1.0);
         let brightness = Brightness {
             share: 0.5,
             media: patchy(size, seed),

@@ -24,6 +24,7 @@ use turbid::photons::{Guide, GuideSettings, MOST_HISTORIES};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Region};
 use turbid::sensor::{Camera, Film, Filter, Method, Streams, View, sample_guided};
+use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
 fn led(guide: &Guide) -> Guides<'_> {
@@ -88,6 +89,33 @@ fn isotropic_light_stays_isotropic() {
     });
     // The irradiance is 1.
     verdict::agrees("radiance", &moments, (FRAC_1_PI, 1e-9), 0.05, 3);
+}
+
+/// Light that is the same from all sides is as bright, by photons, on the faces of a block as in the fog about it.
+#[test]
+fn it_is_as_bright_on_surfaces_as_in_media() {
+    let fog = region(sphere(DVec3::ZERO, 1.0), 0.7, 1.0, 0.6);
+    let block = cuboid(DVec3::new(-0.3, -0.2, -0.25), DVec3::new(0.3, 0.2, 0.25));
+    let light = isotropic(sphere(DVec3::ZERO, 2.0), Faces::Both);
+    let scene = bounded(vec![fog], vec![(block, lambertian(Spectrum::ONE))], vec![light]);
+    let guide = learned(&scene, 2_000_000, Some(0.5));
+    let brightness = guide.brightness().unwrap();
+    let inner = [-2.5, -1.5, -0.5, 0.5, 1.5, 2.5];
+    let (mut faces, mut media) = (Moments::new(), Moments::new());
+    for (x, y) in inner.into_iter().flat_map(|x| inner.map(|y| (x, y))) {
+        for side in [-1.0, 1.0] {
+            // Cells of two faces but those along their edges.
+            faces.push(brightness.surfaces.at(DVec3::new(0.075 * x, 0.05 * y, 0.25 * side)));
+            // Of the fog, cells that lie in it wholly.
+            if x.abs() + y.abs() <= 2.0 {
+                media.push(brightness.media.at(DVec3::new(x, y, 2.5 * side) * 0.25));
+            }
+        }
+    }
+    let relative = |moments: &Moments| moments.std_error() / moments.mean();
+    let error = (relative(&faces).powi(2) + relative(&media).powi(2)).sqrt();
+    let ratio = faces.mean() / media.mean();
+    assert!(error < 0.02 && (ratio - 1.0).abs() < 4.5 * error, "{ratio} +- {error}");
 }
 
 /// Fluence beside a lamp, a volume source and a medium that emits, which its first direction may meet and connections find too.

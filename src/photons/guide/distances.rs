@@ -123,3 +123,78 @@ fn best(scene: &Scene, media: &[Lit], parts: &[Brightness], (seed, replicate): (
         moments.iter().enumerate().skip(1).min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(n, m)| (n, *m))?;
     (least < LEFT * moments[0]).then(|| SHARES[number - 1])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Cuboid, Shape};
+    use crate::light::{Light, Point};
+    use crate::math::Asymmetry;
+    use crate::medium::Homogeneous;
+    use crate::phase::Phase;
+    use crate::scene::{Object, Region, SceneParts};
+    use crate::surface::{Lambertian, Surface};
+
+    /// Fog of albedo 0.8 in a box of side 2 with walls as bright.
+    fn fog() -> Scene {
+        let within = Cuboid::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap();
+        let phase = Phase::with_asymmetry(Asymmetry::try_from(0.0).unwrap());
+        let medium = Homogeneous::new(Spectrum::ONE, Spectrum::grey(0.8), phase).unwrap();
+        let wall = Surface::Lambertian(Lambertian::new(Spectrum::grey(0.8)).unwrap());
+        Scene::new(SceneParts {
+            regions: vec![Region { shape: Shape::Cuboid(within), medium: medium.into() }],
+            objects: vec![Object { shape: Shape::Cuboid(within), surface: wall }],
+            lights: vec![Light::Point(Point::new(DVec3::ZERO, Spectrum::ONE).unwrap())],
+            ..SceneParts::default()
+        })
+        .unwrap()
+    }
+
+    /// Photons in the fog, by places in a unit cube that are as they are drawn, and as many on the walls, all as bright.
+    fn lit(count: usize, stream: &mut Stream, drawn: impl Fn(f64) -> f64) -> (Vec<Lit>, Vec<Lit>) {
+        let mut place = || DVec3::from([stream.unit(), stream.unit(), drawn(stream.unit())]) * 2.0 - 1.0;
+        // Spread over a volume of 8, and over an area of 24.
+        let in_fog = |part| Lit { position: place(), normal: DVec3::ZERO, value: 8.0, part: part % 3 };
+        let media: Vec<Lit> = (0..count).map(in_fog).collect();
+        let on_wall = |part: usize| {
+            let (axis, side) = (part / 3 % 3, if part / 9 % 2 == 0 { 1.0 } else { -1.0 });
+            let (mut position, mut normal) = (place(), DVec3::ZERO);
+            (position[axis], normal[axis]) = (side, -side);
+            Lit { position, normal, value: 24.0, part: part % 3 }
+        };
+        (media, (0..count).map(on_wall).collect())
+    }
+
+    /// Where all is as bright the photons' noise is not learned, however few they are: in 200 fogs not once.
+    #[test]
+    fn noise_is_not_learned() {
+        let scene = fog();
+        for seed in 0..200 {
+            let mut stream = Stream::new(seed, Purpose::Synthetic, 0, 0);
+            let (media, surfaces) = lit(18 << (seed % 10), &mut stream, |z| z);
+            let learned = learned(&scene, (&media, &surfaces), None, None, (seed, 0));
+            assert_eq!(learned.map(|brightness| brightness.share), None, "{seed}");
+        }
+    }
+
+    /// A bright layer is learned, and how many times as bright it is.
+    #[test]
+    fn a_bright_layer_is_learned() {
+        let scene = fog();
+        for seed in 0..20 {
+            let mut stream = Stream::new(seed, Purpose::Synthetic, 0, 0);
+            // Nine tenths of them in the upper half.
+            let up = |z: f64| if z < 0.1 { 5.0 * z } else { 0.5 + (z - 0.1) / 1.8 };
+            let (media, surfaces) = lit(18_000, &mut stream, up);
+            let learned = learned(&scene, (&media, &surfaces), None, None, (seed, 0)).unwrap();
+            assert_eq!(learned.share, 0.5);
+            let mean = |sign: f64| -> f64 {
+                let place = |i: usize| DVec3::new((i % 8) as f64, (i / 8 % 8) as f64, (i / 64) as f64 + 4.0);
+                (0..256)
+                    .map(|i| learned.media.at((0.25 * place(i) - 0.875) * DVec3::new(1.0, 1.0, sign)))
+                    .sum()
+            };
+            assert!((mean(1.0) / mean(-1.0) - 9.0).abs() < 1.0, "{}", mean(1.0) / mean(-1.0));
+        }
+    }
+}
