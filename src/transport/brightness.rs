@@ -14,15 +14,18 @@ use super::flight::{Flight, choose, collision, uncollided};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray, ln_1p, wrap};
+use crate::medium::Homogeneous;
 use crate::rng::Stream;
 use crate::scene::{Scene, SceneHit, Segment, Segments, Target, decay};
 use crate::surface::Surface;
 use glam::{DVec2, DVec3};
 
 /// Cells along an edge of a grid.
-pub const SIDE: usize = 8;
+const SIDE: usize = 8;
+/// Cells of a grid.
+pub const CELLS: usize = SIDE * SIDE * SIDE;
 /// Pieces of one stretch of medium, the last beyond [`FAR`] where it is longer.
-const PIECES: usize = 8;
+const PIECES: usize = 4;
 /// Stretches of medium on a ray that flies this way, at most.
 const STRETCHES: usize = 4;
 /// Mean free paths that are cut into pieces of the same length.
@@ -44,7 +47,7 @@ impl BrightnessGrid {
         let extent = high - low;
         // A flat box has some thickness still.
         let extent = extent.max(DVec3::splat((1e-6 * extent.max_element()).max(f64::MIN_POSITIVE)));
-        BrightnessGrid { low, scale: SIDE as f64 / extent, values: vec![0.0; SIDE * SIDE * SIDE].into() }
+        BrightnessGrid { low, scale: SIDE as f64 / extent, values: vec![0.0; CELLS].into() }
     }
 
     /// Cells per length along each axis [1/L].
@@ -58,8 +61,10 @@ impl BrightnessGrid {
     }
 
     fn cell(&self, p: DVec3) -> usize {
-        // Casts take what is below 0 to 0.
-        let [x, y, z] = ((p - self.low) * self.scale).to_array().map(|at| (at as usize).min(SIDE - 1));
+        const LAST: i32 = SIDE as i32 - 1;
+        // Casts take what is too large or small for them to their ends.
+        let [x, y, z] =
+            ((p - self.low) * self.scale).to_array().map(|at| (at as i32).clamp(0, LAST) as usize);
         (z * SIDE + y) * SIDE + x
     }
 
@@ -99,6 +104,11 @@ impl Ends {
         &self.ways[..self.count]
     }
 
+    /// Mean brightness by these probabilities.
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+
     /// By how much more often a share of the flights makes all of them end where it is so bright.
     pub fn more_often(&self, brightness: f64, share: f64) -> f64 {
         share * brightness / self.mean + (1.0 - share)
@@ -112,9 +122,9 @@ impl Ends {
 
     /// The number of a way, and where in it \[0, 1).
     fn choose(&self, share: f64, u: f64) -> (usize, f64) {
-        let mut u = u;
+        let (mut u, scale) = (u, share / self.mean);
         for (number, (own, brightness)) in self.ways().iter().enumerate() {
-            let chance = own * self.more_often(*brightness, share);
+            let chance = own * (brightness * scale + (1.0 - share));
             if u < chance {
                 return (number, u / chance);
             }
@@ -126,16 +136,35 @@ impl Ends {
     }
 }
 
-/// A piece of a stretch of medium: where it begins on the ray, and its length \[L\].
-fn piece(stretch: Interval, sigma_t: Spectrum, number: usize) -> (f64, f64) {
-    let (length, far) = (stretch.length(), FAR / sigma_t.mean());
-    if length <= far {
-        let step = length / PIECES as f64;
-        return (stretch.start + number as f64 * step, step);
+/// A stretch of medium cut into pieces.
+#[derive(Debug, Clone, Copy)]
+struct Pieces {
+    /// Where the first begins on the ray \[L\].
+    start: f64,
+    /// The length of each but the last, and of that \[L\].
+    lengths: [f64; 2],
+}
+
+impl Pieces {
+    fn of(stretch: Interval, sigma_t: Spectrum) -> Self {
+        let (start, length, far) = (stretch.start, stretch.length(), FAR / sigma_t.mean());
+        if length <= far {
+            return Pieces { start, lengths: [length / PIECES as f64; 2] };
+        }
+        Pieces { start, lengths: [far / (PIECES - 1) as f64, length - far] }
     }
-    let step = far / (PIECES - 1) as f64;
-    let rest = if number == PIECES - 1 { length - far } else { step };
-    (stretch.start + number as f64 * step, rest)
+
+    /// What passes through each but the last, and through that.
+    fn passes(&self, medium: &Homogeneous) -> [Spectrum; 2] {
+        let [step, last] = self.lengths;
+        let passes = decay(medium.depth(step));
+        [passes, if last == step { passes } else { decay(medium.depth(last)) }]
+    }
+
+    /// Where a piece begins on the ray \[L\].
+    fn start_of(&self, number: usize) -> f64 {
+        self.start + number as f64 * self.lengths[0]
+    }
 }
 
 impl Brightness {
@@ -143,7 +172,7 @@ impl Brightness {
     ///
     /// # Arguments
     /// `segments` of medium on the ray up to the body ahead, `hit`
-    #[inline]
+    #[inline(always)]
     pub fn ends(
         &self,
         scene: &Scene,
@@ -157,28 +186,34 @@ impl Brightness {
         let mut ends = Ends { ways: [(0.0, 0.0); PIECES * STRETCHES + 1], count: 0, mean: 0.0 };
         let is_grey = scene.plan().has_grey_extinction;
         // Where extinction is grey one channel stands for all.
-        let mut left = if is_grey { Spectrum(DVec3::X) } else { weight / weight.sum() };
+        let (mut left, mut grey) = (weight / weight.sum(), 1.0);
         for segment in colliding(scene, segments) {
             let matter = scene.medium(segment.medium).matter();
-            let (sigma_t, albedo) = (matter.sigma_t(), matter.albedo().mean());
-            let (mut passes, mut last) = (Spectrum::ONE, f64::NAN);
+            let albedo = matter.albedo().mean();
+            let pieces = Pieces::of(segment.interval, matter.sigma_t());
+            let [passes, rest] = pieces.passes(matter);
+            let middle = ray.at(pieces.start + 0.5 * pieces.lengths[0]);
+            let along = ray.dir * pieces.lengths[0];
             for number in 0..PIECES {
-                let (start, length) = piece(segment.interval, sigma_t, number);
-                if length != last {
-                    (passes, last) = (decay(matter.depth(length)), length);
-                }
-                let behind = left * passes;
-                let own = if is_grey { left[0] - behind[0] } else { (left - behind).sum() };
-                left = behind;
-                let middle = start + 0.5 * length.min(2.0 * FAR / sigma_t.mean());
-                ends.add(own, albedo * self.media.at(self.place(ray.at(middle))));
+                let passes = if number + 1 == PIECES { rest } else { passes };
+                let own = if is_grey {
+                    let before = grey;
+                    grey *= passes[0];
+                    before - grey
+                } else {
+                    let before = left;
+                    left *= passes;
+                    (before - left).sum()
+                };
+                // The last piece may have no end, and what collides in it does so soon.
+                ends.add(own, albedo * self.media.at(self.place(middle + along * number as f64)));
             }
         }
         let mean = ends.mean;
         if !(mean > 0.0) {
             return None;
         }
-        let own = left.sum();
+        let own = if is_grey { grey } else { left.sum() };
         let brightness = match hit.map(|found| self.of_body(scene, ray, found)) {
             None => 0.0,
             Some(Some(brightness)) => brightness,
@@ -228,8 +263,9 @@ impl Brightness {
         }
         let segment = colliding(scene, &segments).nth(number / PIECES)?;
         let matter = scene.medium(segment.medium).matter();
-        let (start, length) = piece(segment.interval, matter.sigma_t(), number % PIECES);
-        let passes = decay(matter.depth(length));
+        let pieces = Pieces::of(segment.interval, matter.sigma_t());
+        let (number, start) = (number % PIECES, pieces.start_of(number % PIECES));
+        let passes = pieces.passes(matter)[usize::from(number + 1 == PIECES)];
         let channel = if scene.plan().has_grey_extinction {
             0
         } else {

@@ -16,7 +16,7 @@ mod walk;
 mod windows;
 
 pub use blocks::{BLOCK, NoProgress, Progress, blocks_at_once, in_parallel, run_blocks, run_blocks_of};
-pub use brightness::{Brightness, BrightnessGrid, Ends};
+pub use brightness::{Brightness, BrightnessGrid, CELLS, Ends};
 pub use emission::{collected, emission};
 pub use equal_angles::{Distances, EqualAngles, span};
 pub use flags::Flags;

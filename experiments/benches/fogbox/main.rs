@@ -45,6 +45,9 @@ pub const SAMPLES: u64 = 16;
 const FOGS: [(&str, f64); 3] = [("iso", 0.16394), ("hg", 0.16228), ("het", 0.16909)];
 const CONVERGED_ERROR: f64 = 1e-4;
 
+/// The variants of Mitsuba.
+pub const VARIANTS: [&str; 2] = ["scalar_rgb", "llvm_ad_rgb"];
+
 /// A picture of 128 x 128 x 3 radiances, and the processor seconds it took.
 pub struct Round {
     /// Rows from the top, pixels from the left, channels.
@@ -122,7 +125,7 @@ fn in_turn(
     count: u64,
 ) -> Result<Vec<(String, Vec<Round>)>> {
     let (mut peers, mut rounds) = (Vec::new(), Vec::new());
-    for variant in ["scalar_rgb", "llvm_ad_rgb"] {
+    for variant in VARIANTS {
         match Peer::start(variant, folder, name) {
             Ok(peer) => {
                 peers.push(peer);

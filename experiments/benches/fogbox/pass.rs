@@ -6,7 +6,7 @@
 //! media and on surfaces.
 
 use crate::peer::Peer;
-use crate::{WIDTH, scenes};
+use crate::{VARIANTS, WIDTH, scenes};
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
 use std::io::Write;
@@ -58,7 +58,7 @@ pub fn compare(out: &mut impl Write, rounds: u64) -> Result<()> {
     })?;
     let folder = scenes::folder().join("fogbox");
     let mut peers = Vec::new();
-    for variant in ["scalar_rgb", "llvm_ad_rgb"] {
+    for variant in VARIANTS {
         match Peer::start(variant, &folder, CLEAR[0].0) {
             Ok(mut peer) => {
                 // What is compiled at the first picture of a scene is compiled before the rounds.

@@ -1,7 +1,9 @@
 //! The claims, by counts alone. Margins of regret are round numbers that somebody who chooses settings would act on.
 
-use super::cases::{FIELDS, Field, MODERATE, MODERATE_FORWARD, SPHERE, THIN, THIN_FORWARD, Treatment, Worth};
-use super::choose::{BreakEven, Currency, best_over_best, break_even, guided_rays, most_efficient, regret};
+use super::cases::{
+    FIELDS, Field, MODERATE, MODERATE_FORWARD, Rival, SPHERE, THIN, THIN_FORWARD, Treatment, Worth,
+};
+use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured, Paths};
 use super::split::{rms, rms_noise};
 use crate::harness::{Claim, Estimate, LEFT_OVER, PREDICTED, Unit};
@@ -18,14 +20,11 @@ pub fn all(data: &Data) -> Vec<Claim> {
     for field in [&THIN, &THIN_FORWARD, &MODERATE, &MODERATE_FORWARD] {
         claims.push(clipping_claim(data, field));
     }
-    for field in FIELDS {
-        claims.extend(break_even_claim(data, field));
+    for rival in Rival::ALL {
+        claims.extend(FIELDS.into_iter().filter_map(|field| break_even_claim(data, field, rival)));
     }
     claims.extend(path_claim("paths", "the path tracer", data.paths.iter()));
     claims.extend(path_claim("guided-paths", "guided paths", data.guided.iter().map(|guided| &guided.paths)));
-    claims.extend(
-        data.guided.iter().zip(&data.paths).map(|(guided, paths)| guided_claim(&guided.paths, paths)),
-    );
     claims
 }
 
@@ -103,30 +102,36 @@ fn clipping_claim(data: &Data, field: &Field) -> Claim {
     Claim::at_most(&format!("{}-clipping", field.name), &text, Unit::ONE, ratio, 0.75)
 }
 
-/// Whether a map pays. Which of the two is claimed of a field is fixed with the field.
-fn break_even_claim(data: &Data, field: &Field) -> Option<Claim> {
+/// Whether a map pays, against paths that nothing leads and the best that paths can do. Which of the two is claimed of a field is fixed with
+/// the field.
+fn break_even_claim(data: &Data, field: &Field, rival: Rival) -> Option<Claim> {
     let chosen = most_efficient(&data.of(field, Treatment::Clipped, None))?;
-    let BreakEven { ratio, share, .. } = break_even(chosen.case, data.paths(field)?, Currency::Operations);
-    let id = format!("{}-break-even", field.name);
+    let BreakEven { ratio, share, .. } =
+        break_even(chosen.case, data.paths_of(rival, field)?, Currency::Operations);
+    let by = rival.name();
+    let id = match rival {
+        Rival::Paths => format!("{}-break-even", field.name),
+        Rival::Guided => format!("{}-break-even-guided", field.name),
+    };
     let title = field.title;
     let claim = match field.worth {
         Worth::By4096 => {
             let text = format!(
                 "{title}, clipped, in operations: 4096 queries from the most efficient map, the map included, over as \
-                 many by paths of the same error"
+                 many by {by} of the same error"
             );
             Claim::at_most(&id, &text, Unit::ONE, share, 1.0)
         }
         Worth::Late => {
             let text = format!(
-                "{title}, clipped, in operations, a photon gathered counted like a ray: rays of a path query over \
+                "{title}, clipped, in operations, a photon gathered counted like a ray: rays of a query by {by} over \
                  photons gathered from the most efficient map of the same error, so that from some number of queries on it pays"
             );
             Claim::at_least(&id, &text, Unit::ONE, ratio, 1.0)
         }
         Worth::Never => {
             let text = format!(
-                "{title}, clipped, in operations, a photon gathered counted like a ray: rays of a path query over photons \
+                "{title}, clipped, in operations, a photon gathered counted like a ray: rays of a query by {by} over photons \
                  gathered from the most efficient map of the same error, so that no number of queries pays for it"
             );
             Claim::at_most(&id, &text, Unit::ONE, ratio, 1.0)
@@ -142,15 +147,4 @@ fn path_claim<'a>(id: &str, name: &str, paths: impl Iterator<Item = &'a Paths>) 
     let text = format!("error of {name}, averaged over depth, all fields");
     let statistic = Estimate::average(&fields)?;
     Some(Claim::about(id, &text, Unit::FRACTION, statistic, 0.0, 2.0 * LEFT_OVER))
-}
-
-/// What maps are compared with is near the best that paths can do: guiding them would not turn a verdict. Less than a fifth of
-/// the second moment, which is what directions have to gain before they are used, is left to gain.
-fn guided_claim(guided: &Paths, paths: &Paths) -> Claim {
-    let id = format!("{}-guided", paths.field.name);
-    let text = format!(
-        "{}: rays of paths guided by photons over those of paths that nothing leads, to the same error",
-        paths.field.title
-    );
-    Claim::at_least(&id, &text, Unit::ONE, guided_rays(guided, paths), 0.8)
 }

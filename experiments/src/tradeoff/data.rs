@@ -215,7 +215,17 @@ impl Data {
 
     /// Paths that nothing leads, in one field.
     pub fn paths(&self, field: &Field) -> Option<&Paths> {
-        self.paths.iter().find(|p| p.field == field)
+        self.paths_of(Rival::Paths, field)
+    }
+
+    /// Those of a rival in a field.
+    pub fn paths_of(&self, rival: Rival, field: &Field) -> Option<&Paths> {
+        match rival {
+            Rival::Paths => self.paths.iter().find(|paths| paths.field == field),
+            Rival::Guided => {
+                self.guided.iter().map(|guided| &guided.paths).find(|paths| paths.field == field)
+            }
+        }
     }
 
     /// The largest maps of a field.

@@ -129,9 +129,10 @@ pub fn notes(budget: &[Entry], data: &Data) -> Vec<String> {
     let (least, most) =
         ratios.fold((f64::INFINITY, 0.0f64), |(low, high), ratio| (low.min(ratio), high.max(ratio)));
     notes.push(format!(
-        "Maps are compared with paths that nothing leads. Guided by where photons came from, they take {least:.2} to {most:.2} times \
-         the rays to the same error, learning aside: in fog like this light comes from too many sides for directions to gain \
-         much. A table has both. Where guiding pays, behind glass and under water, the gallery has it as a rival."
+        "Maps are compared with paths that nothing leads. Guided by photons, they take {least:.2} to {most:.2} times the rays to the same \
+         error, learning aside, and longer for each: in fog like this light comes from too many sides for directions to gain much, \
+         but where it is thin flights are led to collide that would have left. A table has both, and the break-evens are claimed \
+         against both. Where guiding pays most, behind glass and under water, the gallery has it as a rival."
     ));
     let never: Vec<&str> = FIELDS
         .into_iter()

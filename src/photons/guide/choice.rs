@@ -21,7 +21,7 @@ pub(super) const SHARES: [f64; 2] = [0.25, 0.5];
 /// is the same from 0.25 to 3 within the noise of its measurement.
 pub(super) const NOISE: f64 = 2.0;
 /// Part of the second moment that is to be left at most: what takes longer has to gain something.
-pub(super) const LEFT: f64 = 0.8;
+const LEFT: f64 = 0.8;
 
 /// The directions of a surface or a phase function.
 pub(super) enum Own<'a> {
