@@ -552,7 +552,7 @@ fn follow<'a>(mut visitor: PathVisitor<'a>, start: Walker, guides: Guides<'a>, s
         Roulette::below(if guides.windows.is_some() { 0.0 } else { ROULETTE * start.weight.max() });
     let place = (start.ray.origin, start.interior);
     visitor.windowed = guides.windows.map(|windows| Windowed::new(windows, scene, place, start.weight));
-    if let Some(guide) = guides.learned {
+    if let Some(guide) = guides.learned.filter(|guide| guide.is_used()) {
         visitor.guide = Some(guide);
         visitor.heaviest = HEAVIEST / ROULETTE;
     }

@@ -13,8 +13,7 @@
 use super::flight::{Flight, choose, collision, uncollided};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
-use crate::math::{Interval, Ray, ln_1p, wrap};
-use crate::medium::Homogeneous;
+use crate::math::{Interval, Ray, exp_m1, ln_1p, wrap};
 use crate::rng::Stream;
 use crate::scene::{Scene, SceneHit, Segment, Segments, Target, decay};
 use crate::surface::Surface;
@@ -30,6 +29,8 @@ const PIECES: usize = 4;
 const STRETCHES: usize = 4;
 /// Mean free paths that are cut into pieces of the same length.
 const FAR: f64 = 6.0;
+/// Part of the largest brightness on its way below whose mean a flight keeps its own end: where light is bright only where no flight comes.
+const FAINT: f64 = 1e-30;
 
 /// How bright it is about every place of a box; outside as at its border.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,9 +45,9 @@ pub struct BrightnessGrid {
 impl BrightnessGrid {
     /// A dark grid over a box.
     pub fn new(low: DVec3, high: DVec3) -> Self {
-        let extent = high - low;
-        // A flat box has some thickness still.
-        let extent = extent.max(DVec3::splat((1e-6 * extent.max_element()).max(f64::MIN_POSITIVE)));
+        // A flat box, and a point, have some thickness still.
+        let largest = (high - low).abs().max(low.abs()).max(high.abs()).max_element();
+        let extent = (high - low).max(DVec3::splat(if largest > 0.0 { 1e-6 * largest } else { 1.0 }));
         BrightnessGrid { low, scale: SIDE as f64 / extent, values: vec![0.0; CELLS].into() }
     }
 
@@ -154,13 +155,6 @@ impl Pieces {
         Pieces { start, lengths: [far / (PIECES - 1) as f64, length - far] }
     }
 
-    /// What passes through each but the last, and through that.
-    fn passes(&self, medium: &Homogeneous) -> [Spectrum; 2] {
-        let [step, last] = self.lengths;
-        let passes = decay(medium.depth(step));
-        [passes, if last == step { passes } else { decay(medium.depth(last)) }]
-    }
-
     /// Where a piece begins on the ray \[L\].
     fn start_of(&self, number: usize) -> f64 {
         self.start + number as f64 * self.lengths[0]
@@ -187,40 +181,45 @@ impl Brightness {
         let is_grey = scene.plan().has_grey_extinction;
         // Where extinction is grey one channel stands for all.
         let (mut left, mut grey) = (weight / weight.sum(), 1.0);
+        let (mut all, mut brightest) = (0.0, 0.0f64);
         for segment in colliding(scene, segments) {
             let matter = scene.medium(segment.medium).matter();
             let albedo = matter.albedo().mean();
             let pieces = Pieces::of(segment.interval, matter.sigma_t());
-            let [passes, rest] = pieces.passes(matter);
+            let depths = pieces.lengths.map(|length| matter.depth(length));
+            let [near, last] = depths.map(|depth| (decay(depth), collided(depth)));
             let middle = ray.at(pieces.start + 0.5 * pieces.lengths[0]);
             let along = ray.dir * pieces.lengths[0];
             for number in 0..PIECES {
-                let passes = if number + 1 == PIECES { rest } else { passes };
+                let (passes, collides) = if number + 1 == PIECES { last } else { near };
                 let own = if is_grey {
-                    let before = grey;
+                    let come = grey;
                     grey *= passes[0];
-                    before - grey
+                    come * collides[0]
                 } else {
-                    let before = left;
+                    let come = left;
                     left *= passes;
-                    (before - left).sum()
+                    (come * collides).sum()
                 };
                 // The last piece may have no end, and what collides in it does so soon.
-                ends.add(own, albedo * self.media.at(self.place(middle + along * number as f64)));
+                let brightness = albedo * self.media.at(self.place(middle + along * number as f64));
+                ends.add(own, brightness);
+                all += own;
+                brightest = brightest.max(brightness);
             }
-        }
-        let mean = ends.mean;
-        if !(mean > 0.0) {
-            return None;
         }
         let own = if is_grey { grey } else { left.sum() };
         let brightness = match hit.map(|found| self.of_body(scene, ray, found)) {
             None => 0.0,
             Some(Some(brightness)) => brightness,
             // As bright as all others, so that it keeps its probability.
-            Some(None) => mean / (1.0 - own),
+            Some(None) => ends.mean / all,
         };
         ends.add(own, brightness);
+        // Dark, or bright only where no flight comes.
+        if !(ends.mean > FAINT * brightest.max(brightness) && ends.mean < f64::INFINITY) {
+            return None;
+        }
         Some(ends)
     }
 
@@ -265,16 +264,21 @@ impl Brightness {
         let matter = scene.medium(segment.medium).matter();
         let pieces = Pieces::of(segment.interval, matter.sigma_t());
         let (number, start) = (number % PIECES, pieces.start_of(number % PIECES));
-        let passes = pieces.passes(matter)[usize::from(number + 1 == PIECES)];
+        let collides = collided(matter.depth(pieces.lengths[usize::from(number + 1 == PIECES)]));
         let channel = if scene.plan().has_grey_extinction {
             0
         } else {
             let come = weight * decay(scene.optical_depth(ray, start, interior));
-            choose(come * (Spectrum::ONE - passes), stream.unit())
+            choose(come * collides, stream.unit())
         };
-        let flown = -ln_1p(-u * (1.0 - passes[channel])) / matter.sigma_t()[channel];
+        let flown = -ln_1p(-u * collides[channel]) / matter.sigma_t()[channel];
         Some((collision(scene, ray, start + flown, interior, segment.medium, led), factor))
     }
+}
+
+/// What collides in a depth, by channel.
+fn collided(depth: Spectrum) -> Spectrum {
+    if depth.is_grey() { Spectrum::grey(-exp_m1(-depth[0])) } else { depth.map(|depth| -exp_m1(-depth)) }
 }
 
 /// The stretches in which light can collide.

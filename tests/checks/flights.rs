@@ -7,12 +7,12 @@ use crate::support::scenes::{
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::math::{Ray, exp, ln_1p};
+use turbid::math::{Ray, exp, exp_m1, ln_1p};
 use turbid::medium::{Density, Grid};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Region, SURROUNDINGS, Scene};
 use turbid::stats::Moments;
-use turbid::surface::{Mirror, Surface};
+use turbid::surface::{Filter, Mirror, Surface};
 use turbid::transport::{Brightness, BrightnessGrid, Flight, NoProgress, free_flight, run_blocks};
 
 /// Where flights start that are led.
@@ -217,4 +217,77 @@ pub fn led_flights_are_as_many() {
             }
         }
     }
+}
+
+/// The probabilities of a flight's ends are those of its media to the last digits, however thin these are, with whatever lies behind; where it
+/// is bright only behind so much that no flight comes there, and where photons fell into one point, flights keep their own ends or are led
+/// by numbers.
+pub fn ends_are_as_likely_as_flights_end() {
+    let brightness = |media: BrightnessGrid| {
+        let surfaces = BrightnessGrid::new(ORIGIN, ORIGIN);
+        Brightness { share: 0.5, media, surfaces, period: None }
+    };
+    let filter = || Surface::Filter(Filter::new(Spectrum::grey(0.5)).unwrap());
+    for sigma_t in [1e-300, 1e-19, 6e-17, 1e-10, 0.1, 3.0, 1e5] {
+        for color in [Spectrum::ONE, Spectrum::rgb(0.0, 0.3, 1.0)] {
+            let air = Region {
+                shape: cuboid(DVec3::splat(-1.0), DVec3::splat(1.0)),
+                medium: homogeneous(color * sigma_t, Spectrum::grey(0.5), 0.0),
+            };
+            let pane = cuboid(DVec3::new(-1.0, -1.0, 2.0), DVec3::new(1.0, 1.0, 2.1));
+            let scene =
+                bounded(vec![air], vec![(pane, filter())], vec![volume_source(sphere(DVec3::ZERO, 1.0))]);
+            let (ray, weight) = (Ray::new(ORIGIN, DVec3::Z), Spectrum::rgb(0.2, 0.3, 0.7));
+            let hit = scene.hit(&ray, None);
+            let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
+            let segments = scene.segments(&ray, end, SURROUNDINGS);
+            for seed in 0..20 {
+                let brightness = brightness(patchy(0.2, seed));
+                let ends = brightness.ends(&scene, &ray, (hit.as_ref(), &segments), weight).unwrap();
+                let (beyond, within) = ends.ways().split_last().unwrap();
+                let collided: f64 = within.iter().map(|(own, _)| own).sum();
+                let share = |channel: usize| weight[channel] / weight.sum();
+                let depth = |channel: usize| color[channel] * sigma_t * 0.9;
+                let expected: f64 = (0..3).map(|channel| share(channel) * -exp_m1(-depth(channel))).sum();
+                assert!((collided / expected - 1.0).abs() < 1e-13, "{sigma_t} {color:?}: {collided}");
+                assert!((collided + beyond.0 - 1.0).abs() < 1e-13, "{sigma_t} {color:?}: {}", beyond.0);
+                // The pane keeps its probability, and the rest theirs together.
+                assert!((ends.more_often(beyond.1, 0.5) - 1.0).abs() < 1e-12);
+                let led: f64 = ends.ways().iter().map(|way| way.0 * ends.more_often(way.1, 0.5)).sum();
+                assert!((led - 1.0).abs() < 1e-12, "{sigma_t} {color:?}: {led}");
+            }
+        }
+    }
+    let ray = Ray::new(ORIGIN, DVec3::Z);
+    let fly = |brightness: &Brightness, scene: &Scene, seed: u64| {
+        let hit = scene.hit(&ray, None);
+        let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
+        let mut stream = Stream::new(seed, Purpose::Synthetic, 2, 0);
+        brightness.fly(scene, &ray, (hit.as_ref(), end, SURROUNDINGS), Spectrum::ONE, &mut stream)
+    };
+    // All photons at one point, on the ray, beside it, or at the origin of the world.
+    for point in [ray.at(0.5), DVec3::new(0.3, 0.1, -0.2), DVec3::ZERO] {
+        let mut grid = BrightnessGrid::new(point, point);
+        grid.add(point, 3.0);
+        assert!(grid.scale().is_finite() && grid.at(point) > 0.0);
+        let brightness = Brightness { surfaces: grid.clone(), ..brightness(grid) };
+        for seed in 0..100 {
+            if let Some((_, factor)) = fly(&brightness, &layered(Some(lambertian(Spectrum::ONE))), seed) {
+                assert!(factor > 0.0 && factor <= 2.0, "{factor}");
+            }
+        }
+    }
+    // Lit fog behind 400 mean free paths.
+    let slab = |near: f64, far: f64, sigma_t: Spectrum| Region {
+        shape: cuboid(DVec3::new(-1.0, -1.0, near), DVec3::new(1.0, 1.0, far)),
+        medium: homogeneous(sigma_t, Spectrum::grey(0.5), 0.0),
+    };
+    let regions = vec![
+        slab(0.0, 1.1, Spectrum::rgb(400.0, 410.0, 420.0)),
+        slab(1.1, 2.0, Spectrum::rgb(1.0, 2.0, 3.0)),
+    ];
+    let scene = bounded(regions, Vec::new(), vec![volume_source(sphere(DVec3::ZERO, 1.0))]);
+    let mut grid = BrightnessGrid::new(DVec3::splat(-1.0), DVec3::splat(2.0));
+    grid.add(ray.at(1.5), 1.0);
+    assert!((0..100).all(|seed| fly(&brightness(grid.clone()), &scene, seed).is_none()));
 }

@@ -187,3 +187,8 @@ fn flights_are_a_mean_free_path_long() {
 fn led_flights_are_as_many() {
     flights::led_flights_are_as_many();
 }
+
+#[test]
+fn ends_are_as_likely_as_flights_end() {
+    flights::ends_are_as_likely_as_flights_end();
+}

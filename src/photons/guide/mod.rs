@@ -63,6 +63,7 @@ pub struct Guide {
     /// By the axis that normals are next to, and their sign.
     surfaces: [Cells; 6],
     brightness: Option<Brightness>,
+    is_used: bool,
     period: Option<DVec2>,
 }
 
@@ -136,12 +137,12 @@ impl Guide {
             }
         }
         let period = scene.periodic_cell().map(|cell| cell.side);
-        Ok(Guide {
-            media: Cells::new(media, share, &medium_at),
-            surfaces: surfaces.map(|arrivals| Cells::new(arrivals, share, &medium_at)),
-            brightness: distances::learned(scene, (&lit.0, &lit.1), period, share, (seed, replicate)),
-            period,
-        })
+        let media = Cells::new(media, share, &medium_at);
+        let surfaces = surfaces.map(|arrivals| Cells::new(arrivals, share, &medium_at));
+        let brightness = distances::learned(scene, (&lit.0, &lit.1), period, share, (seed, replicate));
+        let mut guide = Guide { media, surfaces, brightness, is_used: false, period };
+        guide.is_used = guide.brightness.is_some() || guide.counts().iter().any(|[_, used]| *used > 0);
+        Ok(guide)
     }
 
     /// What was learned about a place in a medium, if it is to be used.
@@ -171,7 +172,7 @@ impl Guide {
 
     /// Whether anything that was learned is used.
     pub fn is_used(&self) -> bool {
-        self.brightness.is_some() || self.counts().iter().any(|[_, used]| *used > 0)
+        self.is_used
     }
 
     fn place(&self, position: DVec3) -> DVec3 {
