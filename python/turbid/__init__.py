@@ -254,8 +254,9 @@ def measure(
     boundary : what estimates do where a medium ends: none, clipped, reflection, local-linear
     orders : orders of scattering that count: 1, "0..3", (1, None)
     weight_windows : split paths on their way to the lights; only with paths
-    guide : path guiding: send out this many photons, such as 2e5, and lead paths to where they came from: for caustics, and light that
-        comes by way of mirrors or few bright places; only with paths, not with weight_windows, unbiased whatever the photons say
+    guide : path guiding: send out this many photons, such as 2e5, and lead paths to where they came from, and flights through
+        homogeneous media to where they are: for caustics, and light that comes by way of mirrors or is bright in few places; only with
+        paths, not with weight_windows, unbiased whatever the photons say
     seed : the same seed gives the same numbers, on any number of threads
     threads : all cores if none are given
     progress : True for a line on stderr, or a function of stage and part done

@@ -16,7 +16,7 @@ pub fn learn(scene: &Scene, histories: u64, Streams { seed, replicate }: Streams
     let learned = learned.context("--guide")?;
     if replicate == 0 && !learned.is_used() {
         note(
-            "--guide changes nothing: by its photons no other choice of directions or distances would gain a fifth",
+            "--guide changes nothing: by its photons no other choice of directions or distances gains enough",
         )?;
     }
     Ok(learned)

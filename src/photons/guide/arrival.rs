@@ -3,6 +3,9 @@
 use crate::photons::Photon;
 use glam::{DVec3, Vec3};
 
+/// Parts of the photons, by their histories, that know nothing of each other.
+pub(super) const PARTS: u64 = 3;
+
 /// What is learned from a photon.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arrival {

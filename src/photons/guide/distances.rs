@@ -4,7 +4,7 @@
 //! probability of its own, b the brightness, bm their mean, v the noise of what is found there: as of directions, from photons in three
 //! parts, so that chance is no gain. Each flight's is taken over its mean squared, and flights start where photons collided.
 
-use super::PARTS;
+use super::arrival::PARTS;
 use super::choice::{NOISE, SHARES};
 use crate::math::warp;
 use crate::photons::Photon;
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// A bright layer is learned, and how many times as bright it is.
+    /// A bright layer between dark walls is learned, and how many times as bright it is.
     #[test]
     fn a_bright_layer_is_learned() {
         let scene = fog();
@@ -193,8 +193,8 @@ mod tests {
             let mut stream = Stream::new(seed, Purpose::Synthetic, 0, 0);
             // Nine tenths of them in the uppermost eighth.
             let up = |z: f64| if z < 0.1 { 8.75 * z } else { 0.875 + (z - 0.1) / 7.2 };
-            let (media, surfaces) = lit(18_000, &mut stream, up);
-            let learned = learned(&scene, (&media, &surfaces), None, None, (seed, 0)).unwrap();
+            let (media, _) = lit(18_000, &mut stream, up);
+            let learned = learned(&scene, (&media, &[]), None, None, (seed, 0)).unwrap();
             assert_eq!(learned.share, 0.5);
             let cell = |i: usize| DVec3::new((i % 8) as f64, (i / 8 % 8) as f64, (i / 64) as f64);
             let bright = |i: usize| learned.media.at(0.25 * cell(i) - 0.875);

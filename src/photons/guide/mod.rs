@@ -25,13 +25,10 @@ use crate::math::wrap;
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{Brightness, Lobe, NoProgress, Progress};
-use arrival::Arrival;
+use arrival::{Arrival, PARTS};
 use cells::Cells;
 use distances::Lit;
 use glam::{DVec2, DVec3};
-
-/// Parts of the photons, by their histories, that know nothing of each other.
-const PARTS: u64 = 3;
 
 /// Most histories to learn from: more would say nothing new.
 pub const MOST_HISTORIES: u64 = 10_000_000;
