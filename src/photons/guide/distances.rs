@@ -117,13 +117,13 @@ fn best(scene: &Scene, media: &[Lit], by: &[Brightness], (seed, replicate): (u64
         };
         let square = all.mean() * all.mean();
         for (guide, one, other) in [(&a, &b, &c), (&b, &c, &a), (&c, &a, &b)] {
-            let ways = || guide.ways().iter().zip(one.ways()).zip(other.ways());
             for (moment, share) in moments.iter_mut().zip([0.0].iter().chain(&SHARES)) {
-                let second =
-                    |(((own, guided), (_, one)), (_, other)): ((&(f64, f64), &(f64, f64)), &(f64, f64))| {
-                        own * (one * other / square + NOISE) / guide.more_often(*guided, *share)
-                    };
-                *moment += ways().map(second).sum::<f64>();
+                let second = |way: usize| {
+                    let ((own, guided), product) =
+                        (guide.ways()[way], one.ways()[way].1 * other.ways()[way].1);
+                    own * (product / square + NOISE) / guide.more_often(guided, *share)
+                };
+                *moment += (0..guide.ways().len()).map(second).sum::<f64>();
             }
         }
     }
@@ -165,7 +165,7 @@ mod tests {
         let in_fog = |part| Lit { position: place(), normal: DVec3::ZERO, value: 8.0, part: part % 3 };
         let media: Vec<Lit> = (0..count).map(in_fog).collect();
         let on_wall = |part: usize| {
-            let (axis, side) = (part / 3 % 3, if part / 9 % 2 == 0 { 1.0 } else { -1.0 });
+            let (axis, side) = (part / 3 % 3, if (part / 9).is_multiple_of(2) { 1.0 } else { -1.0 });
             let (mut position, mut normal) = (place(), DVec3::ZERO);
             (position[axis], normal[axis]) = (side, -side);
             Lit { position, normal, value: 24.0, part: part % 3 }
