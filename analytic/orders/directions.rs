@@ -9,20 +9,20 @@ use std::f64::consts::LN_10;
 const DECADE: f64 = 3.055;
 
 /// Cosines and weights of a rule on (0, 1].
-pub(super) struct Guide {
+pub(super) struct Directions {
     /// Cosines \[1\].
     pub mu: Vec<f64>,
     /// Weights of sum 1.
     pub weight: Vec<f64>,
 }
 
-impl Guide {
+impl Directions {
     /// Products of two polynomials of degree `degree` at most are integrated to rounding; light that changes on the
     /// scale mu ~ `scale` or above is integrated to about `cut`.
     pub fn new(degree: usize, scale: f64, cut: f64) -> Self {
         let upper = (degree / 2 + 2).max(ceil(-log(cut)) as usize);
         let b = 2.0 / upper as f64;
-        let mut out = Guide { mu: Vec::new(), weight: Vec::new() };
+        let mut out = Directions { mu: Vec::new(), weight: Vec::new() };
         out.panel(&GaussLegendre::rule(upper), b, 1.0);
         let mut high = b;
         // Light below mu is at most the part mu/scale of what there is.
@@ -66,7 +66,7 @@ mod tests {
     fn layers_of_any_depth_are_integrated() {
         for (scale, depths) in [(1.0, [1e-9, 1e-4, 0.3]), (1e-12, [1e-16, 1e-13, 1e-12])] {
             for cut in [1e-12, 1e-9] {
-                let rule = Guide::new(40, scale, cut);
+                let rule = Directions::new(40, scale, cut);
                 for t in depths {
                     let sum: f64 =
                         rule.mu.iter().zip(&rule.weight).map(|(mu, w)| w * -libm::expm1(-t / mu)).sum();

@@ -1,6 +1,6 @@
 //! One grid of depths and directions, and the orders of scattering on it.
 
-use super::directions::Guide;
+use super::directions::Directions;
 use super::mesh::Mesh;
 use super::rays::{Panels, Ray};
 use super::scattering::{Field, Scattering, legendre, mean_phase};
@@ -11,7 +11,7 @@ use libm::exp;
 /// Depths, directions, rays and the scattering between them.
 pub(super) struct Grid {
     pub mesh: Mesh,
-    directions: Guide,
+    directions: Directions,
     rays: Vec<Ray>,
     scattering: Scattering,
     albedo: f64,
@@ -48,7 +48,7 @@ impl Grid {
             Incidence::Diffuse => 1e-9,
         };
         let mesh = Mesh::new(tau, first, nodes);
-        let directions = Guide::new(moments.len(), tau.min(1.0), cut);
+        let directions = Directions::new(moments.len(), tau.min(1.0), cut);
         let panels = Panels::new(&mesh);
         let rays = directions.mu.iter().map(|&mu| panels.ray(&mesh, mu)).collect();
         let scattering = Scattering::new(&directions, albedo, moments);

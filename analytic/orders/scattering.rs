@@ -1,6 +1,6 @@
 //! Sources from radiance: S(mu) = (albedo/2) int h(mu, mu') J(mu') dmu', h = sum_l (2l+1) chi_l P_l(mu) P_l(mu').
 
-use super::directions::Guide;
+use super::directions::Directions;
 
 /// The scattering operator on the directions of both hemispheres, through Legendre moments.
 pub(super) struct Scattering {
@@ -29,7 +29,7 @@ impl Field {
 }
 
 impl Scattering {
-    pub fn new(directions: &Guide, albedo: f64, moments: &[f64]) -> Self {
+    pub fn new(directions: &Directions, albedo: f64, moments: &[f64]) -> Self {
         let mut parity = [Vec::new(), Vec::new()];
         let tables: Vec<Vec<f64>> = directions.mu.iter().map(|&mu| legendre(moments.len(), mu)).collect();
         for (l, &chi) in moments.iter().enumerate() {
@@ -126,7 +126,7 @@ mod tests {
     fn scattering_conserves_photons_and_turns_by_g() {
         let g = 0.6_f64;
         let moments: Vec<f64> = (0..40).map(|l| g.powi(l)).collect();
-        let directions = Guide::new(moments.len(), 1.0, 1e-12);
+        let directions = Directions::new(moments.len(), 1.0, 1e-12);
         let operator = Scattering::new(&directions, 0.8, &moments);
         let mut field = Field::zero(directions.len(), 1);
         for (i, &mu) in directions.mu.iter().enumerate() {

@@ -45,17 +45,24 @@ pub fn compare_seconds(rounds: usize, mut a: impl FnMut() -> f64, mut b: impl Fn
     a();
     b();
     let times: Vec<[f64; 2]> = (0..rounds).map(|_| [a(), b()]).collect();
+    Ratio::of(&times)
+}
 
-    let mut stream = Stream::new(1, Purpose::Resampling, 0, 0);
-    let mut ratios: Vec<f64> = (0..2000)
-        .map(|_| {
-            let sample: Vec<[f64; 2]> = (0..rounds).map(|_| times[stream.index(rounds)]).collect();
-            medians(&sample)[0] / medians(&sample)[1]
-        })
-        .collect();
-    ratios.sort_unstable_by(f64::total_cmp);
-    let seconds = medians(&times);
-    Ratio { ratio: seconds[0] / seconds[1], interval: [ratios[49], ratios[1949]], seconds }
+impl Ratio {
+    /// By the seconds of A and of B in each round.
+    pub fn of(times: &[[f64; 2]]) -> Self {
+        let rounds = times.len();
+        let mut stream = Stream::new(1, Purpose::Resampling, 0, 0);
+        let mut ratios: Vec<f64> = (0..2000)
+            .map(|_| {
+                let sample: Vec<[f64; 2]> = (0..rounds).map(|_| times[stream.index(rounds)]).collect();
+                medians(&sample)[0] / medians(&sample)[1]
+            })
+            .collect();
+        ratios.sort_unstable_by(f64::total_cmp);
+        let seconds = medians(times);
+        Ratio { ratio: seconds[0] / seconds[1], interval: [ratios[49], ratios[1949]], seconds }
+    }
 }
 
 fn medians(times: &[[f64; 2]]) -> [f64; 2] {

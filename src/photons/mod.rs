@@ -22,7 +22,9 @@ pub(crate) use emit::from_light;
 pub use ends::{MOST_EVENTS, check_end};
 pub use guide::{Guide, GuideSettings, MOST_HISTORIES};
 pub use map::PhotonMap;
-pub use pass::{Ends, Histories, Ledger, Part, Pass, PassReport, Run, Storage, is_in, is_indirect, shoot};
+pub use pass::{
+    Ends, Everything, Histories, Ledger, Part, Pass, PassReport, Run, Storage, is_in, is_indirect, shoot,
+};
 pub use record::{Photon, Photons};
 pub use tallies::Scores;
 pub(crate) use tallies::score_bytes;

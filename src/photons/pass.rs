@@ -96,6 +96,20 @@ impl<F: Fn(&Photon) -> bool + Sync> Storage for F {
     }
 }
 
+/// Every photon, in media and on surfaces.
+#[derive(Debug, Clone, Copy)]
+pub struct Everything;
+
+impl Storage for Everything {
+    fn in_medium(&self, _history: u64, _photon: &Photon) -> bool {
+        true
+    }
+
+    fn on_surface(&self, _history: u64, _photon: &Photon) -> bool {
+        true
+    }
+}
+
 /// Where the emitted power went \[W\], summed over channels and histories; each history counts as though it were the
 /// only one, so that divided by the histories these are the powers of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -3,8 +3,8 @@
 //! A flight ends with a collision or at the body ahead, and what a path finds there differs: under the lamp light is scattered that
 //! the far corner has not. The media ahead are cut into pieces; with the probability P of a flight to end in one, and the brightness b
 //! that photons tell of it, it ends there with the probability P (share b/B + 1 - share), B the mean of b by P, and the weight is
-//! divided by the bracket: at most 1/(1 - share). Within a piece flights are what they are. Nothing behind the media is as bright as
-//! photons tell of surfaces; what they tell nothing of, as specular ones, keeps its probability.
+//! divided by the bracket: at most 1/(1 - share). Within a piece flights are what they are. A surface behind the media is as bright as
+//! photons tell of it; one that they tell nothing of, as a specular one, keeps its probability.
 //!
 //! # Source
 //! Herholz et al. 2019, "Volume path guiding based on zero-variance random walk theory", guide distances by the same products of

@@ -26,27 +26,28 @@ const LEFT: f64 = 0.6;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lit {
     position: DVec3,
-    /// Unit normal of the surface; 0 in a medium.
-    normal: DVec3,
+    /// The axis that the surface's normal is next to; none in a medium.
+    across: Option<u8>,
     /// In a medium its power over the extinction, on a surface four times its power: what is scattered or reflected evenly is by this
     /// as bright in both, per volume there and per area here.
     value: f64,
-    part: usize,
+    part: u8,
 }
 
 impl Lit {
-    pub fn in_medium(scene: &Scene, photon: &Photon, part: usize) -> Option<Self> {
+    pub fn in_medium(scene: &Scene, photon: &Photon, part: u8) -> Option<Self> {
         let sigma_t = scene.medium_at(photon.position)?.sigma_t(photon.position);
         let over = |channel: usize| {
             if sigma_t[channel] > 0.0 { f64::from(photon.power[channel]) / sigma_t[channel] } else { 0.0 }
         };
         let value = (0..3).map(over).sum();
-        Some(Lit { position: photon.position, normal: DVec3::ZERO, value, part })
+        Some(Lit { position: photon.position, across: None, value, part })
     }
 
-    pub fn on_surface(photon: &Photon, part: usize) -> Self {
+    pub fn on_surface(photon: &Photon, part: u8) -> Self {
         let value = 4.0 * f64::from(photon.power.element_sum());
-        Lit { position: photon.position, normal: photon.normal.as_dvec3(), value, part }
+        let across = Some(photon.normal.as_dvec3().abs().max_position() as u8);
+        Lit { position: photon.position, across, value, part }
     }
 }
 
@@ -60,13 +61,9 @@ fn grids(lit: &[Lit]) -> Vec<BrightnessGrid> {
     let scale = grids[0].scale();
     for one in lit {
         // A surface crosses its cell along the axis that its normal is next to.
-        let across = one.normal.abs();
-        let per = match across == DVec3::ZERO {
-            true => scale.element_product(),
-            false => scale.element_product() / scale[across.max_position()],
-        };
+        let per = scale.element_product() / one.across.map_or(1.0, |axis| scale[usize::from(axis)]);
         grids[0].add(one.position, one.value * per);
-        grids[1 + one.part].add(one.position, PARTS as f64 * one.value * per);
+        grids[1 + usize::from(one.part)].add(one.position, PARTS as f64 * one.value * per);
     }
     grids
 }
@@ -162,13 +159,14 @@ mod tests {
     fn lit(count: usize, stream: &mut Stream, drawn: impl Fn(f64) -> f64) -> (Vec<Lit>, Vec<Lit>) {
         let mut place = || DVec3::from([stream.unit(), stream.unit(), drawn(stream.unit())]) * 2.0 - 1.0;
         // Spread over a volume of 8, and over an area of 24.
-        let in_fog = |part| Lit { position: place(), normal: DVec3::ZERO, value: 8.0, part: part % 3 };
+        let in_fog =
+            |part: usize| Lit { position: place(), across: None, value: 8.0, part: (part % 3) as u8 };
         let media: Vec<Lit> = (0..count).map(in_fog).collect();
         let on_wall = |part: usize| {
             let (axis, side) = (part / 3 % 3, if (part / 9).is_multiple_of(2) { 1.0 } else { -1.0 });
-            let (mut position, mut normal) = (place(), DVec3::ZERO);
-            (position[axis], normal[axis]) = (side, -side);
-            Lit { position, normal, value: 24.0, part: part % 3 }
+            let mut position = place();
+            position[axis] = side;
+            Lit { position, across: Some(axis as u8), value: 24.0, part: (part % 3) as u8 }
         };
         (media, (0..count).map(on_wall).collect())
     }

@@ -18,7 +18,7 @@ mod cells;
 mod choice;
 mod distances;
 
-use super::{Emitter, Histories, Photon, Run, Storage};
+use super::{Emitter, Everything, Histories, Photon, Run};
 use crate::error::{Error, Result};
 use crate::light::Light;
 use crate::math::wrap;
@@ -62,19 +62,6 @@ pub struct Guide {
     brightness: Option<Brightness>,
     is_used: bool,
     period: Option<DVec2>,
-}
-
-/// Every photon, in media and on surfaces.
-struct Everything;
-
-impl Storage for Everything {
-    fn in_medium(&self, _history: u64, _photon: &Photon) -> bool {
-        true
-    }
-
-    fn on_surface(&self, _history: u64, _photon: &Photon) -> bool {
-        true
-    }
 }
 
 impl Guide {
@@ -124,11 +111,11 @@ impl Guide {
             let pass = run.pass(&Everything, progress)?;
             let part = part as usize;
             for photon in pass.photons() {
-                lit.0.extend(Lit::in_medium(scene, &photon, part));
+                lit.0.extend(Lit::in_medium(scene, &photon, part as u8));
                 media.extend(is_asked(&photon).then(|| Arrival::new(&photon, part)));
             }
             for photon in pass.surfaces.iter().flat_map(|part| part.iter()) {
-                lit.1.push(Lit::on_surface(&photon, part));
+                lit.1.push(Lit::on_surface(&photon, part as u8));
                 let face = &mut surfaces[face(photon.normal.as_dvec3())];
                 face.extend(is_asked(&photon).then(|| Arrival::new(&photon, part)));
             }

@@ -80,21 +80,21 @@ pub(super) struct Aim {
 }
 
 /// The directions from one point: cells of the sphere, and the cone of the ball.
-pub(super) struct Guide {
+pub(super) struct Directions {
     /// Towards the ball, and 1 - cos of its half-angle; none from inside.
     cone: Option<(Frame, f64)>,
 }
 
 impl Aim {
-    pub fn directions(&self, p: DVec3) -> Guide {
+    pub fn directions(&self, p: DVec3) -> Directions {
         let way = self.center - p;
         let sin2 = self.radius * self.radius / way.length_squared();
         let cone = (sin2 < 1.0).then(|| (Frame::new(way.normalize()), sin2 / (1.0 + (1.0 - sin2).sqrt())));
-        Guide { cone }
+        Directions { cone }
     }
 }
 
-impl Guide {
+impl Directions {
     fn is_aimed(&self, dir: DVec3) -> bool {
         self.cone.is_some_and(|(frame, limit)| cosine_pair(frame.z, dir).0 < limit)
     }
