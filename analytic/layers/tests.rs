@@ -85,7 +85,7 @@ fn any_ground() -> impl Strategy<Value = Ground> {
 }
 
 proptest! {
-    #![proptest_config(crate::fixed_cases(12))]
+    #![proptest_config(crate::fixed_cases(8))]
 
     #[test]
     fn bounds_cover_a_third_set_of_nodes(
@@ -98,7 +98,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(crate::fixed_cases(4))]
+    #![proptest_config(crate::fixed_cases(2))]
 
     #[test]
     fn bounds_cover_a_third_set_of_nodes_between_faces(

@@ -44,7 +44,7 @@ fn covered(slab: &AnisotropicSlab, finer: &Solution) -> std::result::Result<f64,
 }
 
 proptest! {
-    #![proptest_config(crate::fixed_cases(60))]
+    #![proptest_config(crate::fixed_cases(30))]
 
     /// The bound is earned: it covers what far more nodes make of the same slab, everywhere.
     #[test]

@@ -58,7 +58,7 @@ fn finer(slab: &FresnelSlab) -> Solution {
 }
 
 proptest! {
-    #![proptest_config(crate::fixed_cases(20))]
+    #![proptest_config(crate::fixed_cases(12))]
 
     /// The bound is earned: it covers what more nodes make of the same slab, everywhere.
     #[test]

@@ -41,7 +41,7 @@ fn single_scattering_is_the_integral() {
     ];
     for sigma_t in cases {
         let scene = fog(sigma_t, albedo);
-        let moments = paths(&scene, Quantity::Radiance(ray(BESIDE)), Orders::only(1), 1 << 19, 2);
+        let moments = paths(&scene, Quantity::Radiance(ray(BESIDE)), Orders::only(1), 1 << 16, 2);
         for c in 0..3 {
             let expected = single_scattering(sigma_t[c], albedo[c], BESIDE);
             verdict::agrees(
@@ -54,7 +54,7 @@ fn single_scattering_is_the_integral() {
         }
     }
     let scene = fog(Spectrum::ONE, Spectrum::grey(0.9));
-    let twice = numbers(1 << 19, 3, |s| by_both(&scene, BESIDE, s) + by_free_flight(&scene, BESIDE, s));
+    let twice = numbers(1 << 16, 3, |s| by_both(&scene, BESIDE, s) + by_free_flight(&scene, BESIDE, s));
     assert!(twice.mean() > 1.5 * single_scattering(1.0, 0.9, BESIDE), "both in full must differ");
 }
 
@@ -120,7 +120,7 @@ fn rays_through_the_lamp_itself() {
         ];
         for (origin, dir) in cases {
             let ray = Ray::new(origin, dir);
-            let got = paths(&scene, Quantity::Radiance(ray), Orders::only(1), 1 << 14, 4);
+            let got = paths(&scene, Quantity::Radiance(ray), Orders::only(1), 6000, 4);
             for (c, got) in got.iter().enumerate() {
                 let of = |z: f64| {
                     let t = (z - origin.z) / dir.z;

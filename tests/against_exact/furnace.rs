@@ -12,7 +12,7 @@ use turbid::scene::{Orders, Quantity, Scene};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
-const PATHS: u64 = 1 << 15;
+const PATHS: u64 = 9000;
 const ASYMMETRIES: [f64; 4] = [0.0, 0.95, -0.5, 0.9999];
 
 fn furnace(shape: Shape, g: f64) -> Scene {

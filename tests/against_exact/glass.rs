@@ -99,7 +99,7 @@ fn photons_cross_plates_of_another_index() {
         };
         let number = usize::from(outer.medium.is_some());
         let [r, t] = faces(whole).map(|quantity| (quantity, Orders::ALL));
-        let measured = tallies(&scene, &[r, t, (Quantity::Absorbed(number), Orders::ALL)], 1 << 17, 12);
+        let measured = tallies(&scene, &[r, t, (Quantity::Absorbed(number), Orders::ALL)], 1 << 16, 12);
         let (right, wrong) = (exact(outer.index), exact(index));
         for (i, name) in ["R", "T", "A"].into_iter().enumerate() {
             let what = format!("{name} between layers of index {}", outer.index);
@@ -230,7 +230,7 @@ fn light_caught_in_a_cube_is_booked() {
     })
     .unwrap();
     let out = (outflow(sphere(DVec3::ZERO, 3.0)), Orders::ALL);
-    let pass = pass(&scene, &[out], 1 << 12, 11, |_| false);
+    let pass = pass(&scene, &[out], 2300, 11, |_| false);
     let cone = 0.5 * (1.0 - (1.0 - 1.0 / (index * index)).sqrt());
     verdict::agrees("out of the cube", &pass.tallies[0][0], (6.0 * cone, 1e-15), 0.08, 11);
     let ledger = &pass.report.ledger;

@@ -34,7 +34,7 @@ fn radiance_of_planes() {
             ..SceneParts::default()
         })
         .unwrap();
-        let measured = by_maps(&scene, (photons, 128), 4, &[in_planes()]).remove(0);
+        let measured = by_maps(&scene, (photons, 110), 4, &[in_planes()]).remove(0);
         for ((part, mu, dphi), moments) in views.into_iter().zip(measured) {
             let (all, error) = exact(exact_slab.radiance(part * tau, mu, dphi).unwrap());
             let (once, _) = exact(single_radiance(tau, albedo, g, mu0, part * tau, mu, dphi).unwrap());

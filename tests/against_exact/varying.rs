@@ -19,8 +19,8 @@ use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
-const PATHS: u64 = 1 << 15;
-const PHOTONS: u64 = 1 << 16;
+const PATHS: u64 = 10_000;
+const PHOTONS: u64 = 20_000;
 const THICKNESS: f64 = 3.0;
 const ALBEDO: f64 = 0.9;
 
@@ -119,7 +119,7 @@ fn stored_photons_carry_the_fluence_of_their_depths() {
         let medium = &scene.regions()[0].medium;
         let mut moments = vec![Moments::new(); parts];
         for replicate in 0..64 {
-            let histories = Histories { count: 2048, seed: 24, replicate, max_order: None };
+            let histories = Histories { count: 400, seed: 24, replicate, max_order: None };
             let pass = shoot(&scene, histories, &[], |_| true, &NoProgress).unwrap();
             let map = pass.clone().into_map(0.0).unwrap();
             let mut sums = vec![0.0; parts];
@@ -173,7 +173,7 @@ fn a_constant_grid_is_the_homogeneous_medium() {
     let homogeneous = ball(crate::support::scenes::homogeneous(sigma_t, Spectrum::grey(ALBEDO), 0.0));
     let gridded = ball(varying(sigma_t * 0.5, ALBEDO, density));
     for (i, asked) in homogeneous.sensors().iter().enumerate() {
-        let of = |scene: &Scene, seed: u64| paths(scene, asked.quantity.clone(), Orders::ALL, 1 << 15, seed);
+        let of = |scene: &Scene, seed: u64| paths(scene, asked.quantity.clone(), Orders::ALL, 1 << 14, seed);
         let (a, b) = (of(&homogeneous, 51), of(&gridded, 52));
         for c in 0..3 {
             verdict::agree(&format!("sensor {i}, channel {c}, by paths"), &a[c], &b[c], 0.5, 51);
@@ -184,7 +184,7 @@ fn a_constant_grid_is_the_homogeneous_medium() {
         for map in 0..64 {
             let gather = Gather::radius(0.4).unwrap();
             let settings = PhotonSettings {
-                photons: 8192,
+                photons: 4096,
                 maps: 1,
                 seed: seed + map,
                 orders: Orders::ALL,

@@ -47,11 +47,11 @@ fn lit(lights: Vec<Light>) -> Scene {
 /// What one map, or 2,048 paths, read of each sensor and channel.
 fn read(scene: &Scene, by: &str, replicate: u64) -> Vec<Measurement> {
     if by == "paths" {
-        let settings = PathSettings { samples: 1 << 11, seed: 61, replicate, orders: Orders::ALL };
+        let settings = PathSettings { samples: 1 << 10, seed: 61, replicate, orders: Orders::ALL };
         return by_paths(scene, &settings, &NoProgress).unwrap();
     }
     let settings = PhotonSettings {
-        photons: 1 << 13,
+        photons: 1 << 12,
         maps: 1,
         seed: 1000 + replicate,
         orders: Orders::ALL,
@@ -308,9 +308,9 @@ pub fn channels_in_another_order_change_nothing_else() {
         let scene = colorful(order);
         let mut found: Vec<[Moments; 3]> = asked
             .iter()
-            .map(|quantity| paths(&scene, quantity.clone(), Orders::ALL, 1 << 17, seed))
+            .map(|quantity| paths(&scene, quantity.clone(), Orders::ALL, 1 << 16, seed))
             .collect();
-        found.extend(tallies(&scene, &tallied.clone().map(|q| (q, Orders::ALL)), 1 << 17, seed));
+        found.extend(tallies(&scene, &tallied.clone().map(|q| (q, Orders::ALL)), 1 << 16, seed));
         found
     };
     let plain = measured([0, 1, 2], 66);

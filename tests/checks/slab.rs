@@ -52,7 +52,7 @@ pub fn single_scattering_is_the_closed_form() {
 /// Layers of equal thickness.
 pub const LAYERS: usize = 5;
 const BATCHES: u64 = 128;
-const PER_BATCH: u64 = 4096;
+const PER_BATCH: u64 = 2300;
 
 /// Sums of a number a photon over the layers of each batch, over histories and volume: no kernel, hence no blur.
 /// `number` says which sum a photon belongs to and what it adds.

@@ -145,7 +145,7 @@ fn a_chromatic_flight_is_unbiased_by_channel() {
     for part in 0..ends.len() {
         let (low, high) = (ends[part], ends.get(part + 1).copied().unwrap_or(f64::INFINITY));
         for forced in [false, true] {
-            let sampled = histories(N, seed, |stream| {
+            let sampled = histories(N / 8, seed, |stream| {
                 match free_flight(&scene, &ray, f64::INFINITY, SURROUNDINGS, weight, forced, stream) {
                     Flight::Collision { t, weight: w, .. } => {
                         assert!(forced || (w.sum() / weight.sum() - 1.0).abs() < 8.0 * f64::EPSILON);

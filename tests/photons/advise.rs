@@ -141,7 +141,7 @@ fn channels_of_their_own_noise() {
     let mut case = Case::new(&scenes::written(&text), probes);
     case.exact.fill(Spectrum::rgb(1.0, 0.1, 0.0) * (4.0 * std::f64::consts::PI));
     let (advice, relative) =
-        case.check("squared error over the advised one, two colors", 2_000_000, 0.1, 256, 37);
+        case.check("squared error over the advised one, two colors", 2_000_000, 0.1, 150, 37);
     // Of eleven photons ten are red and one is green.
     let (of_mean, of_channels) = (1.0 / 11.0, 0.5 * (1.0 / 10.0 + 1.0));
     let (bias, noise, all) = (advice.bias.powi(2), advice.noise.powi(2), advice.error.powi(2));
@@ -157,7 +157,7 @@ fn the_best_radius_of_uncollided_photons() {
     let at = |t: f64| corners.map(|(x, y)| (Quantity::Fluence(glam::DVec3::new(x, y, t)), exp(-t)));
     let case = Case::new(&scene, [1.0, 2.0].into_iter().flat_map(at).collect());
     let (advice, relative) =
-        case.check("squared error over the advised one, uncollided", 2_000_000, 0.05, 128, 19);
+        case.check("squared error over the advised one, uncollided", 2_000_000, 0.05, 90, 19);
     // The negative control leaves the bias out.
     verdict::rejects("bias left out", &relative, (advice.noise / advice.error).powi(2), 19);
     // Bias r^2/10 with error^2 = 7/3 bias^2: r = sqrt(10 x 0.05 sqrt(3/7)) = 0.572. The optimum is flat: the radius is

@@ -164,7 +164,7 @@ fn fields_are_blurred_across_the_ray() {
         ("aslant", aslant, Interval { start: 0.75, end: 1.375 }),
     ];
     let mut moments = [[Moments::new(); 5]; 2];
-    for replicate in 0..400 {
+    for replicate in 0..220 {
         let map = synthetic.map(Number::Expected(20_000), 11, replicate).unwrap();
         for ((_, ray, span), moments) in ways.iter().zip(&mut moments) {
             for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {

@@ -267,7 +267,7 @@ fn radiance_of_a_slab_by_every_blur_and_length() {
     let mut variances = Vec::new();
     for length in BeamLength::ALL {
         let estimators = cases.map(|(radius, blur, _)| of_length(radius, blur, length));
-        let measured = means_by_maps(&scene, (1500, 200), 35, &estimators);
+        let measured = means_by_maps(&scene, (1500, 115), 35, &estimators);
         for ((estimator, moments), (.., expected)) in estimators.iter().zip(&measured).zip(cases) {
             verdict::agrees(&estimator.name(), moments, (expected, 1e-7), 0.05 * expected, 35);
         }
@@ -339,7 +339,7 @@ fn fluence_of_a_slab() {
             };
             let blurs = if orders == Orders::ALL { &BeamBlur::ALL[1..] } else { &BeamBlur::ALL[..1] };
             let estimators: Vec<Estimator> = blurs.iter().map(|blur| of(*blur)).collect();
-            let maps = if orders == Orders::ALL { 150 } else { 64 };
+            let maps = if orders == Orders::ALL { 110 } else { 64 };
             let measured = by_maps(&scene, (8000, maps), seed, &estimators);
             for (estimator, measured) in estimators.iter().zip(&measured) {
                 for (t, moments) in depths.iter().zip(measured) {

@@ -191,9 +191,9 @@ fn forced_flights_are_stored_to_their_ends() {
         })
         .unwrap();
         let estimator = across(Kernel::Epanechnikov, 0.03);
-        let measured = by_maps(&scene, (6000, 150), seed, &[estimator]).remove(0);
+        let measured = by_maps(&scene, (6000, 75), seed, &[estimator]).remove(0);
         for (view, (ray, moments)) in views.iter().zip(&measured).enumerate() {
-            let reference = paths(&plain, Quantity::Radiance(*ray), orders, 1 << 16, seed);
+            let reference = paths(&plain, Quantity::Radiance(*ray), orders, 1 << 15, seed);
             for channel in 0..3 {
                 let expected = reference[channel].mean();
                 // The blur of a point light at seven times the radius is below 1 part in 500.
@@ -210,7 +210,7 @@ fn forced_flights_are_stored_to_their_ends() {
 fn radiance_of_a_slab() {
     let scene = looked_into((Incidence::Beam(1.0), 0.9, 0.0), (0.5, 0.0));
     let estimators = [0.1, 0.2].map(|radius| across(Kernel::Uniform, radius));
-    let measured = means_by_maps(&scene, (3000, 300), 5, &estimators);
+    let measured = means_by_maps(&scene, (3000, 140), 5, &estimators);
     for ((estimator, moments), expected) in estimators.iter().zip(&measured).zip([0.093_460_6, 0.091_948_3]) {
         verdict::agrees(&estimator.name(), moments, (expected, 1e-7), 0.035 * expected, 5);
     }
@@ -299,7 +299,7 @@ fn a_point_light_beside_a_ray() {
         (Kernel::Uniform, 2.0, FRAC_PI_4),
     ];
     let mut moments = [Moments::new(); 5];
-    let count = 20_000;
+    let count = 8000;
     for replicate in 0..100 {
         let mut stream = Stream::new(5, Purpose::Synthetic, replicate, 0);
         let dir = |_| warp::square_to_sphere(stream.pair());
@@ -397,7 +397,7 @@ fn radiance_across_beams_is_that_of_paths() {
         .unwrap();
         // What passes through a density is tracked once a map: a random product, which one map in two hundred hardly averages.
         let (promise, maps, histories) =
-            if name == "even" { (0.3, 200, 1 << 19) } else { (0.5, 150, 1 << 18) };
+            if name == "even" { (0.3, 190, 1 << 18) } else { (0.5, 105, 1 << 17) };
         let sampled = across(Kernel::Epanechnikov, 0.15).treated(Treatment::Clipped);
         let mut estimators = vec![sampled];
         if name == "varying in colour" {
@@ -443,7 +443,7 @@ fn a_room_with_glass_keeps_its_ledger() {
     let sampled = of_beams(settings(1), 0.05);
     let whole = Settings { volume: sampled.volume.of_length(BeamLength::Whole), ..sampled };
     for (read, seed) in [(sampled, 21), (whole, 23)] {
-        layers_are_those_of_paths(&room, Indirect::Seen, &read, 4000, seed);
+        layers_are_those_of_paths(&room, Indirect::Seen, &read, 2600, seed);
     }
 }
 

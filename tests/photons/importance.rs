@@ -84,7 +84,7 @@ fn importance_moves_photons_and_changes_no_mean() {
         let mut events = [0u64; 2];
         for (way, by_importance) in [None, Some(&importance)].into_iter().enumerate() {
             for replicate in 0..MAPS {
-                let maps = maps(&scene, indirect, by_importance, 2000, replicate + 1000 * way as u64);
+                let maps = maps(&scene, indirect, by_importance, 800, replicate + 1000 * way as u64);
                 for (place, (_, low, high)) in PLACES.iter().enumerate() {
                     for (kind, (power, count)) in stored(&maps, (*low, *high)).into_iter().enumerate() {
                         powers[way][place][kind].push(power);

@@ -65,7 +65,7 @@ fn peaked_slabs_know_no_radius() {
         let expected =
             exact(referee(&medium(0.9, g), 1.0, Incidence::Diffuse).radiance(depth, mu, 0.0).unwrap());
         let all = [of_points(Kernel::Uniform, 0.3), of_points(Kernel::Biweight, 0.5)];
-        let measured = means_by_maps(&scene, (10_000, 200), 55, &all);
+        let measured = means_by_maps(&scene, (10_000, 140), 55, &all);
         for (estimator, moments) in all.iter().zip(&measured) {
             let what = format!("g {g}, {}", estimator.name());
             verdict::agrees(&what, moments, expected, 0.15 * expected.0, 55);
@@ -109,9 +109,9 @@ fn rays_begin_anywhere() {
     .unwrap();
     let plain = bounded(regions, vec![], vec![light]);
     let estimators = [of_points(Kernel::Epanechnikov, 0.08), of_beams(0.05, BeamBlur::OneD)];
-    for (estimator, measured) in estimators.iter().zip(&by_maps(&scene, (20_000, 100), 55, &estimators)) {
+    for (estimator, measured) in estimators.iter().zip(&by_maps(&scene, (12_000, 100), 55, &estimators)) {
         for which in 0..2 {
-            let reference = paths(&plain, Quantity::Radiance(looks[which]), orders, 1 << 17, 55)[0];
+            let reference = paths(&plain, Quantity::Radiance(looks[which]), orders, 1 << 16, 55)[0];
             let expected = reference.mean();
             // The blur of a field that bends by a few per cent over the radius.
             let error = libm::hypot(reference.std_error(), 0.01 * expected);

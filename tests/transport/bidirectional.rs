@@ -259,7 +259,7 @@ fn orders_are_a_part_of_all() {
         Scene::new(room(vec![lamp(), point_light(DVec3::new(0.0, 0.4, 0.0), Spectrum::ONE)])).unwrap();
     let (eye, dir) = (DVec3::new(0.3, 0.1, 0.9), DVec3::new(0.1, -0.3, -0.9).normalize());
     let sum = |orders: Orders, kept: Orders, seed: u64| {
-        numbers(1 << 15, seed, |stream| {
+        numbers(1 << 14, seed, |stream| {
             let mut sum = 0.0;
             let mut add = |order: u32, _: Layer, value: Spectrum| {
                 assert!(orders.contains(order));
@@ -275,12 +275,12 @@ fn orders_are_a_part_of_all() {
     }
     let at = DVec3::new(0.2, -0.3, 0.4);
     for orders in [Orders::only(0), Orders::only(2), Orders { min: 0, max: Some(4) }] {
-        let connected = numbers(1 << 15, 3, |stream| {
+        let connected = numbers(1 << 14, 3, |stream| {
             let mut sum = 0.0;
             bidirectional::fluence(&scene, at, orders, stream, |_, value| sum += value[0]);
             sum
         });
-        let paths = numbers(1 << 16, 4, |stream| {
+        let paths = numbers(1 << 15, 4, |stream| {
             let mut sum = 0.0;
             fluence(&scene, at, orders, Guides::default(), stream, |_, value| sum += value[0]);
             sum

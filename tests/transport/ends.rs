@@ -311,7 +311,7 @@ fn roulette_of_faint_transmittances_keeps_the_mean() {
     let ray = Ray::new(DVec3::new(0.0, 0.5, 0.3), DVec3::X);
     let part = Interval { start: 0.0, end: 1.0 };
     let exact = exp(-tau);
-    let through = crate::support::run::numbers(1 << 16, 6, |stream| {
+    let through = crate::support::run::numbers(1 << 14, 6, |stream| {
         segment_transmittance(&medium, &ray, part, stream)[0] / exact
     });
     verdict::agrees("transmittance over the exact one", &through, (1.0, 1e-6), 0.3, 6);
@@ -333,7 +333,7 @@ fn roulette_of_faint_transmittances_is_by_channel() {
         let density = Density::grid(grid.clone()).unwrap();
         let medium = varying(tau / density.integral(&ray, part), grid);
         let mut through = [Moments::new(), Moments::new()];
-        for history in 0..1 << 14 {
+        for history in 0..1 << 13 {
             let mut stream = Stream::new(6, Purpose::Synthetic, 1, history);
             let transmitted = segment_transmittance(&medium, &ray, part, &mut stream);
             // The dense channel alone has 1e5.
@@ -365,7 +365,7 @@ fn roulette_of_faint_emission_keeps_the_mean_and_ends() {
     let tau = 30.0;
     let scene = bounded(vec![before(tau / 0.1), behind(exp(tau))], Vec::new(), Vec::new());
     let ray = Ray::new(DVec3::new(0.0, 0.5, 0.3), DVec3::X);
-    let light = crate::support::run::numbers(1 << 16, 6, |stream| emission(&scene, &ray, 4.0, 0, stream)[0]);
+    let light = crate::support::run::numbers(1 << 15, 6, |stream| emission(&scene, &ray, 4.0, 0, stream)[0]);
     verdict::agrees("emission of layers and from behind", &light, (2.0, 1e-6), 0.2, 6);
     // Without the game each of these takes fifty thousand look-ups.
     let dense = bounded(vec![before(5e4), behind(1.0)], Vec::new(), Vec::new());

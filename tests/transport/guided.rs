@@ -60,7 +60,7 @@ fn the_exact_slab() {
         let guide = learned(&scene, 20_000, Some(0.5));
         assert!(guide.counts()[0][1] > 8);
         for depth in [0.1, 1.0, 1.9] {
-            let moments = numbers(1 << 17, seed, |stream| {
+            let moments = numbers(1 << 14, seed, |stream| {
                 sample_guided(&scene, &at_depth(depth), Orders::ALL, led(&guide), stream).0[0]
             });
             let value = exact(known.fluence(depth).unwrap());

@@ -64,8 +64,8 @@ fn with_glass() {
     };
     let scene = room.scene();
     let paths = reference(&scene, 6);
-    layers_are_those_of_the_reference((&scene, &paths), Indirect::Seen, &settings(1), 8000, 6);
-    layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings(4), 8000, 7);
+    layers_are_those_of_the_reference((&scene, &paths), Indirect::Seen, &settings(1), 3000, 6);
+    layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings(4), 3000, 7);
 }
 
 /// Walls above water and a floor below it light each other: rays of a gathering carry radiance across the level, scaled
@@ -81,7 +81,7 @@ fn gathered_across_water() {
         has_glass: false,
         has_water: true,
     };
-    layers_are_those_of_paths(&room, Indirect::Gathered, &settings(4), 4000, 9);
+    layers_are_those_of_paths(&room, Indirect::Gathered, &settings(4), 1000, 9);
 }
 
 /// Rays of the gathering that collide read photons or beams about the collision, where those of the camera read them along the way.
@@ -105,7 +105,7 @@ fn gathered_beside_rays_that_are_read_at_once() {
         [(standard.volume.along_rays(radius), 41), (standard.volume.along_beams(radius), 42)]
     {
         let settings = Settings { volume, ..standard };
-        layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings, 2500, seed);
+        layers_are_those_of_the_reference((&scene, &paths), Indirect::Gathered, &settings, 800, seed);
     }
 }
 
@@ -127,7 +127,7 @@ fn gathered_twice() {
         has_water: false,
     };
     let near = Settings { near: 1.2, ..settings(4) };
-    layers_are_those_of_paths(&room, Indirect::Gathered, &near, 4000, 8);
+    layers_are_those_of_paths(&room, Indirect::Gathered, &near, 2000, 8);
 }
 
 /// A diffuse room of grey fog.
@@ -154,7 +154,7 @@ fn in_uneven_fog() {
     parts.regions[0].medium = Heterogeneous::new(medium, Density::grid(grid).unwrap()).into();
     let scene = Scene::new(parts).unwrap();
     assert!(scene.plan().has_heterogeneous);
-    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Gathered, &settings(4), 4000, 9);
+    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Gathered, &settings(4), 3000, 9);
 }
 
 /// A floor of tiles, and a red pane of glass that stands in the room and bends nothing: direct light and photons pass it.
@@ -168,7 +168,7 @@ fn with_tiles_and_a_stained_pane() {
     parts.objects.push(Object { shape: Shape::Rectangle(pane), surface: Surface::Filter(red) });
     let scene = Scene::new(parts).unwrap();
     assert!(scene.plan().has_filters);
-    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Seen, &settings(1), 4000, 10);
+    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Seen, &settings(1), 2000, 10);
 }
 
 /// Fog that emits where it is dense, more in one colour, and a ball of emitting glass in it: no light but theirs.
@@ -185,7 +185,7 @@ fn lit_by_media_alone() {
     parts.lights.clear();
     let scene = Scene::new(parts).unwrap();
     assert_eq!((scene.named_lights().len(), scene.lights().len()), (0, 2));
-    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Gathered, &settings(4), 4000, 11);
+    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Gathered, &settings(4), 1500, 11);
 }
 
 /// In a white room filled with anything of one temperature, which emits as it absorbs, the radiance is the source function

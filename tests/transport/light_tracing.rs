@@ -80,7 +80,7 @@ pub(super) fn by_photons(scene: &Scene, camera: &Camera, histories: u64) -> Vec<
 fn a_room_of_fog_is_the_same_from_both_ends() {
     let scene = room();
     let camera = camera(DVec3::new(0.3, 0.1, 1.8), DVec3::new(0.0, 0.0, -0.4), 50.0, Filter::Box);
-    let (paths, photons) = (by_paths(&scene, &camera, 32), by_photons(&scene, &camera, 8000));
+    let (paths, photons) = (by_paths(&scene, &camera, 20), by_photons(&scene, &camera, 5000));
     for layer in [Layer::Direct, Layer::Indirect, Layer::Single, Layer::Multiple] {
         (0..3).for_each(|channel| compare("room", &paths, &photons, layer, channel));
     }
@@ -94,7 +94,7 @@ fn a_room_of_fog_is_the_same_from_both_ends() {
 fn walls_seen_from_within_fog() {
     let scene = room();
     let camera = camera(DVec3::new(0.3, 0.1, 0.95), DVec3::new(0.0, 0.0, -0.4), 70.0, Filter::Tent);
-    let (paths, photons) = (by_paths(&scene, &camera, 32), by_photons(&scene, &camera, 8000));
+    let (paths, photons) = (by_paths(&scene, &camera, 16), by_photons(&scene, &camera, 4000));
     compare("walls", &paths, &photons, Layer::Direct, 0);
     compare("walls", &paths, &photons, Layer::Indirect, 1);
 }
@@ -128,7 +128,7 @@ pub(super) fn ball_of_glass(sigma_t: f64) -> (Scene, Camera) {
 #[test]
 fn light_through_a_ball_of_glass() {
     let (scene, camera) = ball_of_glass(0.0);
-    let (paths, photons) = (by_paths(&scene, &camera, 64), by_photons(&scene, &camera, 30_000));
+    let (paths, photons) = (by_paths(&scene, &camera, 32), by_photons(&scene, &camera, 15_000));
     compare("ball", &paths, &photons, Layer::Direct, 0);
     compare("ball", &paths, &photons, Layer::Caustic, 0);
 }

@@ -105,7 +105,7 @@ fn paths_are_those_of_regions() {
         let places = [[-1.5, 0.3, -0.4], [-0.3, 0.5, 0.4], [0.1, 0.2, 0.05]];
         for place in places.iter().filter(|_| set == 0) {
             let [a, b] = [0, 1]
-                .map(|i| paths(&scenes[i], Quantity::Fluence((*place).into()), Orders::ALL, N, 2 + i as u64));
+                .map(|i| paths(&scenes[i], Quantity::Fluence((*place).into()), Orders::ALL, N / 2, 2 + i as u64));
             for c in 0..3 {
                 compare(format!("fluence at {place:?}, channel {c}"), [&a[c], &b[c]]);
             }
@@ -117,7 +117,7 @@ fn paths_are_those_of_regions() {
             let [a, b] = [0, 1].map(|i| {
                 let (scene, seed) = (&scenes[i], 4 + i as u64);
                 let within = scene.interior_at(origin);
-                histories(4 * N, seed, |stream| {
+                histories(2 * N, seed, |stream| {
                     let layers = path::layers(scene, ray, None, within, stream).0;
                     let [direct, single, multiple] = classes.map(|class| layers[class][1]);
                     Spectrum::rgb(direct, single, multiple)
@@ -198,5 +198,5 @@ fn the_photon_mapper_is_the_path_tracer() {
     parts.interiors[1] = filled("dense", 1.0, dense);
     let scene = Scene::new(parts).unwrap();
     assert!(scene.plan().has_matched && !scene.plan().has_specular);
-    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Gathered, &settings(2), 4000, 12);
+    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Gathered, &settings(2), 2000, 12);
 }

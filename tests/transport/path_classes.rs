@@ -165,7 +165,7 @@ fn mean_over_a_ball(distance: f64, radius: f64) -> f64 {
 #[test]
 fn photons_off_the_mirror_are_the_light_of_the_image() {
     const MAPS: u64 = 64;
-    const PHOTONS: u64 = 1 << 17;
+    const PHOTONS: u64 = 90_000;
     let (scene, place, radius) = (room(), DVec3::new(0.7, 1.0, 0.6), 0.3);
     let (mut by_mirror, mut uncollided) = (Moments::new(), Moments::new());
     for replicate in 0..MAPS {

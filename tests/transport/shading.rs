@@ -41,8 +41,8 @@ fn room(has_glass: bool) -> Scene {
 
 #[test]
 fn bodies_by_paths_and_photon_maps() {
-    layers_of_the_scene_are_those_of_paths(&room(true), Indirect::Seen, &settings(1), 8000, 11);
-    layers_of_the_scene_are_those_of_paths(&room(false), Indirect::Gathered, &settings(4), 8000, 12);
+    layers_of_the_scene_are_those_of_paths(&room(true), Indirect::Seen, &settings(1), 3000, 11);
+    layers_of_the_scene_are_those_of_paths(&room(false), Indirect::Gathered, &settings(4), 3000, 12);
 }
 
 /// The diffuse ball, and the floor beside it, where no glass stands before the eye.
@@ -51,7 +51,7 @@ fn bodies_by_paths_and_light_tracing() {
     let scene = room(true);
     let eye = DVec3::new(1.2, 1.2, 1.1);
     let camera = camera(eye, DVec3::new(0.6, 1.5, 0.45), 50.0, Filter::Box);
-    let (paths, photons) = (by_paths(&scene, &camera, 16), by_photons(&scene, &camera, 80_000));
+    let (paths, photons) = (by_paths(&scene, &camera, 8), by_photons(&scene, &camera, 60_000));
     for layer in [Layer::Direct, Layer::Indirect] {
         compare("smooth", &paths, &photons, layer, 0);
     }

@@ -58,7 +58,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(80, 20_260_103))]
+    #![proptest_config(cases(40, 20_260_103))]
 
     #[test]
     fn near_the_ranges(

@@ -94,7 +94,7 @@ fn two_stream(tau: f64, albedo: f64, g: f64, mu0: f64, t: f64) -> Outcome {
 }
 
 proptest! {
-    #![proptest_config(cases(100_000, 20_260_111))]
+    #![proptest_config(cases(40_000, 20_260_111))]
 
     /// All bits. A positive number below 1 is as often as not in range, and far below 1: what takes milliseconds is
     /// asked one time in 1024.
@@ -124,7 +124,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(200, 20_260_112))]
+    #![proptest_config(cases(100, 20_260_112))]
 
     #[test]
     fn near_the_ranges(a in near(), b in near(), c in near(), d in near(), n in 0_u32..2000) {

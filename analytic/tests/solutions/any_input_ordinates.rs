@@ -41,7 +41,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(250, 20_260_104))]
+    #![proptest_config(cases(120, 20_260_104))]
 
     #[test]
     fn what_a_slab_answers(

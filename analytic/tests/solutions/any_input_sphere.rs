@@ -64,7 +64,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(60, 20_260_104))]
+    #![proptest_config(cases(30, 20_260_104))]
 
     #[test]
     fn solved_spheres(
@@ -101,7 +101,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(12, 20_260_104))]
+    #![proptest_config(cases(6, 20_260_104))]
 
     #[test]
     fn bodies_built_on_them(

@@ -179,7 +179,7 @@ fn refusals() {
 }
 
 proptest! {
-    #![proptest_config(cases(200, 20_260_103))]
+    #![proptest_config(cases(100, 20_260_103))]
 
     /// Lengths over twenty decades and places anywhere: a finite answer with a bound, or a refusal.
     #[test]

@@ -69,7 +69,7 @@ fn answers(slab: &StratifiedSlab) -> Vec<(String, Value)> {
 }
 
 proptest! {
-    #![proptest_config(cases(24, 20_270_101))]
+    #![proptest_config(cases(12, 20_270_101))]
 
     #[test]
     fn adding_agrees_with_discrete_ordinates(
@@ -86,7 +86,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(16, 20_270_102))]
+    #![proptest_config(cases(8, 20_270_102))]
 
     /// A plane drawn through a layer is no interface.
     #[test]
@@ -217,7 +217,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(64, 20_270_103))]
+    #![proptest_config(cases(32, 20_270_103))]
 
     /// Numbers of any bits are answered or refused.
     #[test]

@@ -353,7 +353,7 @@ fn what_is_not_known_is_refused() {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 150,
+        cases: 70,
         rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_103),
         failure_persistence: None,
         ..ProptestConfig::default()
