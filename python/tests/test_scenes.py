@@ -183,3 +183,12 @@ def test_flags_are_truth_values():
         turbid.render("fogbox", importance="no")
     with pytest.raises(turbid.Error, match="weight_windows is 0; allowed: True or False"):
         turbid.measure("slab", "paths", weight_windows=0)
+
+
+def test_words_are_text():
+    with pytest.raises(turbid.Error, match=r"with_ is \['paths'\]; allowed: text"):
+        turbid.measure("slab", ["paths"])
+    with pytest.raises(turbid.Error, match="kernel is None; allowed: text"):
+        turbid.measure("slab", "photons", kernel=None)
+    with pytest.raises(turbid.Error, match="edges is 2; allowed: text"):
+        turbid.render("fogbox", edges=2)

@@ -28,6 +28,7 @@ from ._arguments import (
     real as _real,
     seed as _seed,
     threads as _threads,
+    word as _word,
 )
 from ._progress import Progress, told
 from ._study import Study, study
@@ -95,10 +96,17 @@ _METHODS = {
 }
 """Arguments that are for some methods alone."""
 
+_WORDS = set("with_ kernel caustic_kernel beam_blur beam_length ray_ends step_rule boundary edges".split())
+"""Arguments that are words."""
+
 
 def _refuse_idle(function: Any, given: Mapping[str, Any]) -> None:
-    """Refuses an argument that is not its default, and that the method ignores."""
-    defaults, with_ = inspect.signature(function).parameters, given["with_"]
+    """Refuses what is no word where one is asked for, and an argument that is not its default, and that the method ignores."""
+    defaults = inspect.signature(function).parameters
+    for name in sorted(_WORDS & defaults.keys()):
+        if given[name] is not defaults[name].default:
+            _word(name, given[name])
+    with_ = given["with_"]
     known = {"photons", "light", *_PATHS, _BIDIRECTIONAL}
     for name, methods in _METHODS[function.__name__].items():
         value, default = given[name], defaults[name].default

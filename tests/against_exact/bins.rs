@@ -75,7 +75,7 @@ fn fluxes_through_planes_of_a_slab() {
     for how in LIT {
         let exact_slab = layers(how);
         let scene = slab(how, &sensors);
-        let scored = scores(&scene, PHOTONS / 3, 1);
+        let scored = scores(&scene, PHOTONS, 1);
         for (number, sensor) in scene.sensors().iter().enumerate() {
             let (t, way) = (depths[number / 3] * TAU, ways[number % 3]);
             let flux = |way: &str| {
@@ -87,7 +87,7 @@ fn fluxes_through_planes_of_a_slab() {
             };
             let what = format!("{way} at {t}, {how:?}");
             for (bin, moments) in scored[number].iter().enumerate() {
-                let by_paths = bin_paths(&scene, sensor, bin, PATHS / 3, 2)[0];
+                let by_paths = bin_paths(&scene, sensor, bin, PATHS, 2)[0];
                 verdict::agrees(&format!("{what}, scored"), &moments[0], flux(way), 0.05, 1);
                 verdict::agrees(&format!("{what}, paths"), &by_paths, flux(way), 0.15, 2);
             }
@@ -114,7 +114,7 @@ fn layers_of_a_slab() {
     for how in LIT {
         let exact_slab = layers(how);
         let scene = slab(how, &sensors);
-        let scored = scores(&scene, PHOTONS / 3, 3);
+        let scored = scores(&scene, PHOTONS, 3);
         for (layer, collided) in scored[1].iter().enumerate() {
             // A layer is 1/4 thick.
             let absorbed = exact_slab.absorptance(layer).unwrap();
@@ -133,7 +133,7 @@ fn layers_of_a_slab() {
                 let name = format!("{name}, {what}");
                 verdict::agrees(&format!("{name}, {scoring}"), &moments, reference, 0.1, 3);
                 if scoring == "track-length" {
-                    let by_paths = bin_paths(&scene, sensor, layer, PATHS / 3, 4)[0];
+                    let by_paths = bin_paths(&scene, sensor, layer, PATHS, 4)[0];
                     verdict::agrees(&format!("{name}, paths"), &by_paths, reference, 0.3, 4);
                 }
             }

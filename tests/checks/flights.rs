@@ -19,7 +19,7 @@ use turbid::transport::{Brightness, BrightnessGrid, Flight, NoProgress, free_fli
 const ORIGIN: DVec3 = DVec3::new(0.1, 0.2, 0.1);
 
 /// Flights drawn a stream.
-const DRAWS: u64 = 400;
+const DRAWS: u64 = 1024;
 
 /// Ways to fly a grey ball of extinction 2 and radius 40 about the origin: a homogeneous medium in closed form; the same
 /// beside a small one that varies, piece by piece; a constant grid, by tentative collisions that are all real.

@@ -397,7 +397,7 @@ fn radiance_across_beams_is_that_of_paths() {
         .unwrap();
         // What passes through a density is tracked once a map: a random product, which one map in two hundred hardly averages.
         let (promise, maps, histories) =
-            if name == "even" { (0.3, 190, 1 << 18) } else { (0.5, 105, 1 << 17) };
+            if name == "even" { (0.3, 190, 1 << 18) } else { (0.5, 150, 1 << 17) };
         let sampled = across(Kernel::Epanechnikov, 0.15).treated(Treatment::Clipped);
         let mut estimators = vec![sampled];
         if name == "varying in colour" {

@@ -51,7 +51,7 @@ fn bodies_by_paths_and_light_tracing() {
     let scene = room(true);
     let eye = DVec3::new(1.2, 1.2, 1.1);
     let camera = camera(eye, DVec3::new(0.6, 1.5, 0.45), 50.0, Filter::Box);
-    let (paths, photons) = (by_paths(&scene, &camera, 8), by_photons(&scene, &camera, 60_000));
+    let (paths, photons) = (by_paths(&scene, &camera, 8), by_photons(&scene, &camera, 80_000));
     for layer in [Layer::Direct, Layer::Indirect] {
         compare("smooth", &paths, &photons, layer, 0);
     }

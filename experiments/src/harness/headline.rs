@@ -38,7 +38,7 @@ impl Headline {
 }
 
 /// A row of headlines.csv.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 pub(super) struct HeadlineRecord<'a> {
     experiment: &'a str,
     name: &'a str,

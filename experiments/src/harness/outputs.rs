@@ -9,7 +9,7 @@ use super::{
 use crate::prediction::Prediction;
 use anyhow::{Context, anyhow, ensure};
 use serde::Serialize;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 use turbid::output::{check_writable, write_atomically, write_csv, write_json};
 
@@ -35,7 +35,7 @@ impl<'a> Seconds<'a> {
 }
 
 /// A row of answers.csv: the cheapest map that reaches an error in a scene, if there is one. CPU time is of this machine.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 pub(super) struct AnswerRecord<'a> {
     scene: &'a str,
     target_error: f64,
@@ -193,13 +193,23 @@ pub(super) fn keep_or_write(path: &Path, mut new: Provenance) -> anyhow::Result<
     Ok(new)
 }
 
+/// Rows as CSV; the header alone where there are none.
+pub(super) fn write_rows<T: Serialize + Default>(out: &mut dyn io::Write, rows: &[T]) -> io::Result<()> {
+    if !rows.is_empty() {
+        return write_csv(out, rows);
+    }
+    let mut blank = Vec::new();
+    write_csv(&mut blank, [T::default()])?;
+    out.write_all(blank.split_inclusive(|byte| *byte == b'\n').next().unwrap_or_default())
+}
+
 /// results.csv, claims.csv, the headline numbers and the figures: functions of settings and seed alone.
 pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::Result<()> {
     let rows: Vec<Record> = sections
         .iter()
         .flat_map(|s| s.section.rows.iter().map(|row| Record::new(s.experiment.name, row)))
         .collect();
-    write_atomically(out.join("results.csv"), |file| write_csv(file, &rows))?;
+    write_atomically(out.join("results.csv"), |file| write_rows(file, &rows))?;
     for (name, text) in sections.iter().flat_map(|s| &s.section.files) {
         write_atomically(out.join(name), |file| file.write_all(text.as_bytes()))?;
     }
@@ -207,9 +217,9 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
         .iter()
         .flat_map(|s| s.judged.iter().map(|judged| ClaimRecord::new(s.experiment.name, judged)))
         .collect();
-    write_atomically(out.join("claims.csv"), |file| write_csv(file, &claims))?;
+    write_atomically(out.join("claims.csv"), |file| write_rows(file, &claims))?;
     let headlines: Vec<_> = sections.iter().flat_map(headlines).collect();
-    write_atomically(out.join("headlines.csv"), |file| write_csv(file, headline::records(&headlines)))?;
+    write_atomically(out.join("headlines.csv"), |file| write_rows(file, &headline::records(&headlines)))?;
     let commands = headline::commands(&headlines);
     write_atomically(out.join("numbers.tex"), |file| file.write_all(commands.as_bytes()))?;
     let folder = out.join("figures");
@@ -235,7 +245,7 @@ fn headlines(part: &SectionReport) -> impl Iterator<Item = (&'static str, String
 }
 
 /// A row of claims.csv.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct ClaimRecord<'a> {
     experiment: &'a str,
     claim: &'a str,

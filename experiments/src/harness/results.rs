@@ -169,7 +169,7 @@ impl Row {
 }
 
 /// A row of results.csv.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub(super) struct Record<'a> {
     experiment: &'a str,
     case: &'a str,

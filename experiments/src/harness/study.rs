@@ -6,7 +6,7 @@ use super::manifest::Manifest;
 use super::measure::{Task, cell_path, measure};
 use super::merge::{Expected, check_mergeable, collect};
 use super::outputs::{
-    AnswerRecord, Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results,
+    AnswerRecord, Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results, write_rows,
 };
 use super::panics::caught;
 use super::program::{on_threads, program};
@@ -370,7 +370,7 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
     write_atomically(settings.out.join("timing.csv"), |out| write_csv(out, &timing))?;
     let answers: Vec<AnswerRecord> =
         sections.iter().flat_map(|s| &s.section.answers).flat_map(AnswerRecord::of_answer).collect();
-    write_atomically(settings.out.join("answers.csv"), |out| write_csv(out, &answers))?;
+    write_atomically(settings.out.join("answers.csv"), |out| write_rows(out, &answers))?;
     let page = report::page(study.name, settings, &sections, &provenance);
     let path = settings.out.join("report.html");
     write_atomically(&path, |out| out.write_all(page.as_bytes()))?;

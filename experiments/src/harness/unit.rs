@@ -57,6 +57,12 @@ impl Unit {
     }
 }
 
+impl Default for Unit {
+    fn default() -> Self {
+        Unit::ONE
+    }
+}
+
 impl Serialize for Unit {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name)
