@@ -302,7 +302,11 @@ fn a_scene_within_the_file() {
     // Nothing is claimed and nothing answered: the tables have their headers all the same.
     for (table, columns) in [("claims", 15), ("headlines", 6), ("answers", 11)] {
         let text = std::fs::read_to_string(at.join("within").join(format!("{table}.csv"))).unwrap();
-        assert_eq!((text.lines().count(), text.trim_end().split(',').count()), (1, columns), "{table}: {text}");
+        assert_eq!(
+            (text.lines().count(), text.trim_end().split(',').count()),
+            (1, columns),
+            "{table}: {text}"
+        );
     }
     std::fs::write(&file, study_of(&within.replace("albedo = 0.0", "albedo = 1.5"))).unwrap();
     assert!(refused(at, &["mine.toml"]).ends_with("mine.toml: scene: albedo is 1.5; allowed: 0 to 1"));

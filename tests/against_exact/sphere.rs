@@ -54,7 +54,8 @@ fn escape_and_absorption() {
                 ("escape", outflow(body(radius)), exact_ball.escape()),
                 ("absorbed", Quantity::Absorbed(0), exact_ball.absorptance()),
             ];
-            let photons = tallies(&scene, &quantities.clone().map(|(_, q, _)| (q, Orders::ALL)), PHOTONS / 3 * 2, 1);
+            let photons =
+                tallies(&scene, &quantities.clone().map(|(_, q, _)| (q, Orders::ALL)), PHOTONS / 3 * 2, 1);
             for ((name, quantity, value), photons) in quantities.into_iter().zip(photons) {
                 let what = format!("{name}, {source:?}, radius {radius}, albedo {albedo}");
                 verdict::agrees(&format!("photons: {what}"), &photons[0], exact(value), 0.01, 1);

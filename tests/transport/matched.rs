@@ -104,8 +104,9 @@ fn paths_are_those_of_regions() {
         let scenes = both(lights);
         let places = [[-1.5, 0.3, -0.4], [-0.3, 0.5, 0.4], [0.1, 0.2, 0.05]];
         for place in places.iter().filter(|_| set == 0) {
-            let [a, b] = [0, 1]
-                .map(|i| paths(&scenes[i], Quantity::Fluence((*place).into()), Orders::ALL, N / 2, 2 + i as u64));
+            let [a, b] = [0, 1].map(|i| {
+                paths(&scenes[i], Quantity::Fluence((*place).into()), Orders::ALL, N / 2, 2 + i as u64)
+            });
             for c in 0..3 {
                 compare(format!("fluence at {place:?}, channel {c}"), [&a[c], &b[c]]);
             }

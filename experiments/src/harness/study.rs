@@ -6,7 +6,8 @@ use super::manifest::Manifest;
 use super::measure::{Task, cell_path, measure};
 use super::merge::{Expected, check_mergeable, collect};
 use super::outputs::{
-    AnswerRecord, Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results, write_rows,
+    AnswerRecord, Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results,
+    write_rows,
 };
 use super::panics::caught;
 use super::program::{on_threads, program};
