@@ -219,6 +219,7 @@ fn a_run_is_kept_in_files() {
     assert_eq!(std::fs::read(folder.path().join("2000.json")).unwrap(), kept);
     assert_eq!(run("2000..2002"), first);
     assert!(first.contains("2 scenes: "), "{first}");
+    sweep().args(["--seed", "2000", "--print", "--scene", "mine.toml"]).assert().code(2);
     let text = sweep().args(["--seed", "2000", "--print"]).assert().success();
     assert_eq!(String::from_utf8(text.get_output().stdout.clone()).unwrap(), scene(2000).0.toml());
 }

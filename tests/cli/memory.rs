@@ -262,6 +262,12 @@ fn wrong_settings_are_told() {
             "the smallest diffuse body is 4.00e-3 L across",
         ],
     );
+    // More photons do not shorten a radius that is given.
+    told(
+        &scene,
+        &["--global", "2e4", "--caustic", "emit:60", "--gather-rays", "0", "--radius", "0.05"],
+        &["look-ups in the global map reach", "is 4.00e-3 L across: a smaller --radius"],
+    );
 }
 
 /// In a medium whose density varies, steps that nobody asked for are no longer than the shortest mean free path: here a

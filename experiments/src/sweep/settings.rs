@@ -36,7 +36,7 @@ pub struct Settings {
     #[arg(long)]
     pub no_shrink: bool,
     /// Print the scene of --seed, and nothing else
-    #[arg(long, requires = "seed")]
+    #[arg(long, requires = "seed", conflicts_with = "scene")]
     pub print: bool,
     /// Negative control: paths are too bright by this factor, which every scene that they see must show
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, hide_default_value = true)]

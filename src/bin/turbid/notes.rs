@@ -101,6 +101,7 @@ pub fn tell_gathers(
     {
         let Some(stored) = stored.filter(|stored| *stored > 0 && gathers.count > 0) else { continue };
         let radius = Gathers::mean_radius(gathers);
+        let is_fixed = k.is_none();
         let k = k.filter(|_| name != "volume" || !settings.volume.reads_rays());
         if let Some(k) = k.filter(|k| stored < *k) {
             note(&format!(
@@ -128,6 +129,7 @@ pub fn tell_gathers(
         let advice = match (name, settings.volume.ray_radius, settings.volume.beam_radius) {
             ("volume", Some(_), _) => "a smaller --ray-radius".to_string(),
             ("volume", _, Some(_)) => "a smaller --beam-radius".to_string(),
+            _ if is_fixed => "a smaller --radius".to_string(),
             _ => format!("--{name} for more photons, or a smaller --max-radius"),
         };
         if 2.0 * radius > extent {

@@ -45,7 +45,7 @@ pub fn body_moments(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> 
 pub(super) const LEAST_PART: f64 = 1e-13;
 
 /// The least part whose digits are known: less than that of the smallest body in the largest ball that scenes hold.
-const LEAST_OF_ALL: f64 = 1e-200;
+pub(super) const LEAST_OF_ALL: f64 = 1e-200;
 
 /// A box whose faces are all nearer than this part of the radius is read as if the kernel were everywhere as in its middle: what its
 /// shells make of it would be lost in their rounding.

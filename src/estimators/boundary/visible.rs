@@ -4,6 +4,7 @@
 //! kernel on a ray is then known in closed form, and only the directions are sampled. Where one flat face parts the whole
 //! ball, nothing is.
 
+use super::moments::LEAST_OF_ALL;
 use super::sheets::{Sheets, rectangles_of};
 use super::surfaces::Boundary;
 use crate::estimators::Kernel;
@@ -19,7 +20,7 @@ use std::sync::LazyLock;
 
 /// Directions of a set: at a flat wall the part is then within a hundredth or so of the true one, and right in the mean.
 const DIRECTIONS: u32 = 64;
-/// Sets are added until the parts on their directions sum to this: an estimate divides by the part, and the mean of 1/part
+/// Sets are added until the parts on their directions sum to this times the largest: an estimate divides by the part, and the mean of 1/part
 /// is 1 plus the part's relative variance.
 const ENOUGH: f64 = 24.0;
 /// Directions across a ray: at a flat wall the part is then within about a hundredth of the true one.
@@ -233,9 +234,14 @@ impl<'a> Surroundings<'a> {
         if let Some(screen) = self.screen.filter(|_| self.room >= radius && self.later.is_empty()) {
             return 1.0 - kernel.beyond_plane(screen.distance / radius);
         }
+        // What the kernel has within the farthest end of the medium: no direction has more, and the part in a medium that is small beside
+        // the kernel is as small.
+        let most = self.medium.and_then(Shape::bounds).map_or(1.0, |(center, size)| {
+            kernel.within(((self.eye.distance(center) + size) / radius).min(1.0)).max(LEAST_OF_ALL)
+        });
         let mut stream = stream_of(self.eye, salt);
         let (mut sum, mut count) = (0.0, 0);
-        while sum < ENOUGH && count < MOST {
+        while sum < ENOUGH * most && count < MOST {
             let axes = Frame::new(warp::square_to_sphere(stream.pair()));
             let (sin, cos) = sin_cos(TAU * stream.unit());
             let (across, beside) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
@@ -245,7 +251,7 @@ impl<'a> Surroundings<'a> {
             }
             count += DIRECTIONS;
         }
-        (sum / f64::from(count)).max(1.0 / f64::from(MOST))
+        (sum / f64::from(count)).max(most / f64::from(MOST))
     }
 
     /// The planes before which everything is kept that is within a radius, and the rectangles that hide something of it; none where
@@ -302,8 +308,9 @@ impl<'a> Surroundings<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::moments::body_part;
     use super::*;
-    use crate::geometry::{Cuboid, Rectangle};
+    use crate::geometry::{Cuboid, Rectangle, Sphere};
     use crate::stats::Moments;
 
     /// A block turned about z, of five rectangles or six, and one along the axes; each reaches up to about z = 0.
@@ -327,6 +334,34 @@ mod tests {
         ways[2].screen = None;
         ways[2].bodies.iter_mut().for_each(|body| body.front = None);
         ways
+    }
+
+    /// A medium with a speck in it, however large the kernel: the part is that of the medium alone, which is known in closed form.
+    #[test]
+    fn small_media_have_small_parts() {
+        let speck = [Shape::Sphere(Sphere::new(DVec3::new(0.1, 0.2, 0.3), 1e-6).unwrap())];
+        let ball = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0).unwrap());
+        let cube = Shape::Cuboid(Cuboid::new(DVec3::splat(-0.6), DVec3::new(0.6, 0.8, 1.0)).unwrap());
+        let point = DVec3::new(0.3, -0.2, 0.1);
+        for (medium, kernel) in
+            [ball, cube].iter().flat_map(|medium| Kernel::ALL.map(|kernel| (medium, kernel)))
+        {
+            let boundary = Boundary::of(medium).unwrap();
+            let boundary = boundary.about(&speck);
+            for radius in [0.9, 3.0, 20.0, 1e3, 1e6, 1e12] {
+                let surroundings = Surroundings::new(&boundary, point, point, radius);
+                assert!(!surroundings.is_clear(radius));
+                let mut ratios = Moments::new();
+                for salt in 0..64 {
+                    ratios.push(
+                        surroundings.share(kernel, radius, salt) / body_part(kernel, medium, point, radius),
+                    );
+                }
+                let off = ratios.mean() - 1.0;
+                assert!(off.abs() < 4.0 * ratios.std_error() + 1e-6, "{medium:?} {kernel:?} {radius}: {off}");
+                assert!(ratios.std_error() < 0.005, "{medium:?} {kernel:?} {radius}: {}", ratios.std_error());
+            }
+        }
     }
 
     /// Where one face fills the ball, the closed form is the mean of the directions. In all places photons are seen as by
