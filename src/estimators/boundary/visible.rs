@@ -308,8 +308,8 @@ impl<'a> Surroundings<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::moments::body_part;
     use super::*;
+    use crate::estimators::boundary::moments::body_part;
     use crate::geometry::{Cuboid, Rectangle, Sphere};
     use crate::stats::Moments;
 
