@@ -28,7 +28,6 @@ from ._arguments import (
     real as _real,
     seed as _seed,
     threads as _threads,
-    word as _word,
 )
 from ._progress import Progress, told
 from ._study import Study, study
@@ -104,8 +103,8 @@ def _refuse_idle(function: Any, given: Mapping[str, Any]) -> None:
     """Refuses what is no word where one is asked for, and an argument that is not its default, and that the method ignores."""
     defaults = inspect.signature(function).parameters
     for name in sorted(_WORDS & defaults.keys()):
-        if given[name] is not defaults[name].default:
-            _word(name, given[name])
+        if given[name] is not defaults[name].default and not isinstance(given[name], str):
+            raise Error(f"{name} is {given[name]!r}; allowed: text")
     with_ = given["with_"]
     known = {"photons", "light", *_PATHS, _BIDIRECTIONAL}
     for name, methods in _METHODS[function.__name__].items():

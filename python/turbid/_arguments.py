@@ -43,13 +43,6 @@ def flag(name: str, value: Any) -> bool:
     return bool(value)
 
 
-def word(name: str, value: Any) -> str:
-    """Text; which words are allowed is said where they are read."""
-    if not isinstance(value, str):
-        raise Error(f"{name} is {value!r}; allowed: text")
-    return str(value)
-
-
 def threads(value: Any) -> Optional[int]:
     return optional_count("threads", value, 1, 1024)
 

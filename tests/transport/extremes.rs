@@ -55,10 +55,10 @@ fn an_optical_thickness_of_1e_8() {
             (transmittance(tau), Orders::SCATTERED),
             (transmittance(tau), Orders::ALL),
         ];
-        let photons = pass(&scene, &sensors, 1 << 20, 1, |_| false).tallies;
+        let photons = pass(&scene, &sensors, 1 << 22, 1, |_| false).tallies;
         for (i, name) in ["R", "T scattered"].into_iter().enumerate() {
             assert!(
-                photons[i][0].std_error() < 2e-3 * expected,
+                photons[i][0].std_error() < 1e-3 * expected,
                 "{name}: {}",
                 photons[i][0].std_error() / expected
             );
@@ -88,9 +88,9 @@ fn an_optical_thickness_of_1e_8() {
 fn a_thin_slab_under_diffuse_light_by_paths() {
     let (tau, albedo) = (1e-8, 0.9);
     let scene = slab(tau, albedo, 0.0, Incidence::Diffuse);
-    let moments = paths(&scene, reflectance(tau), Orders::ALL, 1 << 22, 12)[0];
+    let moments = paths(&scene, reflectance(tau), Orders::ALL, 1 << 24, 12)[0];
     let expected = albedo * tau;
-    assert!(moments.std_error() < 2.6e-3 * expected, "{}", moments.std_error() / expected);
+    assert!(moments.std_error() < 1.3e-3 * expected, "{}", moments.std_error() / expected);
     verdict::agrees("R by paths", &moments, (expected, 1e-6 * expected), 1e-2 * expected, 12);
 }
 
