@@ -24,7 +24,7 @@ use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::math::{Interval, Ray, ln, sin, warp};
 use turbid::phase::Isotropic;
 use turbid::photons::beams::{Beam, BeamKind, BeamTree};
-use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, MediumSamples, fill};
 use turbid::photons::{Flags, PhotonMap, PhotonTree, Photons};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Scene, SceneFile};
@@ -284,7 +284,7 @@ fn amounts(global: u64, volume: u64) -> MapSettings {
         global: Amount::Stored(global),
         caustic: Amount::Emitted(1),
         volume: Amount::Stored(volume),
-        beams: None,
+        media: MediumSamples::Points,
         indirect: Indirect::Seen,
         seed: 1,
         replicate: 0,

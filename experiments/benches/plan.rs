@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::io::Write;
 use std::path::PathBuf;
 use turbid::integrators::mapper::{Mapper, Settings};
-use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, MediumSamples, fill};
 use turbid::scene::{Scene, SceneFile};
 use turbid::sensor::{Method, Streams};
 use turbid::transport::NoProgress;
@@ -71,7 +71,7 @@ fn by_photons(scene: &Scene) {
         global: amount,
         caustic: amount,
         volume: amount,
-        beams: None,
+        media: MediumSamples::Points,
         indirect: Indirect::Seen,
         seed: 1,
         replicate: 0,

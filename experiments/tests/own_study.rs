@@ -321,28 +321,37 @@ fn a_scene_within_the_file() {
 #[test]
 fn a_picture_by_layer() {
     let text = "scene = 'fogbox'\nphotons = [2e4]\nmaps = 8\n[measure]\npicture = { width = 12, height = 9, blocks = [2, 2] }\n\
-                [[estimators]]\nk = 50\n[[estimators]]\nbeam_radius = 0.05\nbeam_length = 'whole'\n[reference]\nerror = 0.05\n";
+                [[estimators]]\nk = 50\n[[estimators]]\nbeam_radius = 0.05\nbeam_length = 'whole'\n\
+                [[estimators]]\nbeam_radius = 0.05\nplanes = true\n[reference]\nerror = 0.05\n";
     let (folder, file) = written(text);
     let at = folder.path();
     study(at, &["mine.toml", "--out", "out"]).assert().success();
     let rows = rows(&at.join("out/results.csv"));
     let of = |group: &str| rows.iter().filter(|row| row["place"].starts_with(group)).count();
-    assert_eq!((of("total"), of("single"), of("multiple"), of("direct"), of("all single")), (8, 8, 8, 8, 2));
+    assert_eq!(
+        (of("total"), of("single"), of("multiple"), of("direct"), of("all single")),
+        (12, 12, 12, 12, 3)
+    );
     // A strip of 0.05 blurs by less than balls of 50 photons of so few.
-    let is_sharp = |place: &str, length: &str| {
-        place.starts_with("direct") || (place.starts_with("multiple") && length == "whole")
+    let is_sharp = |place: &str, radius: &str| {
+        place.starts_with("direct") || (place.starts_with("multiple") && !radius.is_empty())
     };
-    let sharp: Vec<_> = rows.iter().filter(|row| is_sharp(&row["place"], &row["beam_length"])).collect();
-    assert_eq!(sharp.len(), 12);
+    let sharp: Vec<_> = rows.iter().filter(|row| is_sharp(&row["place"], &row["beam_radius"])).collect();
+    assert_eq!(sharp.len(), 20);
     for row in sharp {
         let number = |key: &str| row[key].parse::<f64>().unwrap();
         let error = (number("std_error").powi(2) + number("reference_error").powi(2)).sqrt();
         let z = (number("mean") - number("reference")) / error;
         assert!(z.abs() < student_critical(ALPHA, 7), "{row:?}");
     }
-    let two = text.replace("[reference]", "[[estimators]]\nbeam_radius = 0.05\n[reference]");
-    std::fs::write(&file, two).unwrap();
-    assert!(refused(at, &["mine.toml", "--out", "out"]).contains("some beams are sampled and some whole"));
+    let own = text.replace("planes = true", "ray_ends = 'own'");
+    std::fs::write(&file, own).unwrap();
+    assert!(
+        refused(at, &["mine.toml", "--out", "out"]).contains("one homogeneous region with nothing in it")
+    );
+    let pool = format!("scene = '{}/scenes/pool.toml'", env!("CARGO_MANIFEST_DIR"));
+    std::fs::write(&file, text.replace("scene = 'fogbox'", &pool)).unwrap();
+    assert!(refused(at, &["mine.toml", "--out", "out"]).contains("planes: planes can be stored neither"));
 }
 
 /// Rays and places of an exact slab by points along rays, and by beams of every blur, length and end, and by planes: all right, each with its

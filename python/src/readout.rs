@@ -1,13 +1,15 @@
 //! How maps are filled and read where nothing else is asked for: the choices of `turbid render`, number by number, so that the
 //! same seed makes the same picture.
 
-use crate::choices::{beam_blur, beam_length, check_about_rays, chosen, kernel, step_rule, treatment};
+use crate::choices::{
+    beam_blur, beam_length, check_about_rays, chosen, kernel, ray_ends, step_rule, treatment,
+};
 use crate::error::refuse;
 use anyhow::{Context, Result, anyhow};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel, RayEnds};
 use turbid::integrators::mapper::{LEAST_K, Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
@@ -38,6 +40,8 @@ pub struct Options {
     beam_radius: Option<f64>,
     beam_blur: String,
     beam_length: String,
+    ray_ends: String,
+    planes: bool,
     kernel: String,
     caustic_kernel: String,
     gather_rays: u32,
@@ -60,6 +64,7 @@ pub struct Readout {
     treatment: Treatment,
     blur: BeamBlur,
     length: BeamLength,
+    ends: RayEnds,
     rule: StepRule,
     clips_discs: bool,
     /// Photons of the global, the caustic and the volume map.
@@ -97,6 +102,7 @@ impl Options {
             treatment: treatment(&self.boundary)?,
             blur: beam_blur(&self.beam_blur)?,
             length: beam_length(&self.beam_length)?,
+            ends: ray_ends(&self.ray_ends)?,
             rule: step_rule(&self.step_rule)?,
             clips_discs: chosen("edges", &self.edges, &[("none", false), ("clipped", true)])?,
             amounts: [
@@ -110,11 +116,6 @@ impl Options {
 }
 
 impl Readout {
-    /// How far the beams of the volume map go, if it is of beams.
-    pub fn beams(&self) -> Option<BeamLength> {
-        self.options.beam_radius.map(|_| self.length)
-    }
-
     /// Whether importance leads photons.
     pub fn is_by_importance(&self) -> bool {
         self.options.importance
@@ -177,10 +178,18 @@ impl Readout {
         if ray_radius.is_some() && beam_radius.is_some() {
             return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
         }
+        settings.volume.has_planes = self.options.planes;
+        if ray_radius.is_some() && self.options.planes {
+            return Err(anyhow!("ray_radius reads points and planes flights; allowed: one of them"));
+        }
+        settings.volume.ray_ends = self.ends;
+        settings.volume.check_ends(scene).context("ray_ends")?;
         if settings.volume.reads_rays() {
             check_about_rays(self.treatment)?;
             if self.options.volume_k.is_some() {
-                return Err(anyhow!("volume_k is of balls; allowed: without ray_radius and beam_radius"));
+                return Err(anyhow!(
+                    "volume_k is of balls; allowed: without ray_radius, beam_radius and planes"
+                ));
             }
         }
         settings.volume.beam_blur = self.blur;
@@ -217,7 +226,7 @@ impl Readout {
             settings.spacing = spacing;
             if spacing > 0.0 && !settings.shares_gathers() {
                 return Err(anyhow!(
-                    "spacing is about random steps; allowed: with jitter, step_rule \"integrated\", and neither ray_radius nor beam_radius"
+                    "spacing is about random steps; allowed: with jitter, step_rule \"integrated\", and none of ray_radius, beam_radius and planes"
                 ));
             }
         }

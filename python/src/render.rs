@@ -13,10 +13,9 @@ use turbid::Spectrum;
 use turbid::integrators::Layer;
 use turbid::integrators::mapper::Mapper;
 use turbid::memory;
-use turbid::photons::beams::BeamMap;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{MapSettings, Maps, fill_counted_by_importance, forecast};
-use turbid::photons::{Guide, GuideSettings, PhotonMap};
+use turbid::photons::{Guide, GuideSettings};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Pixel, Streams, check_camera};
 use turbid::transport::Progress;
@@ -89,8 +88,8 @@ impl Request {
         let [global, caustic, volume] = self.readout.amounts;
         let Streams { seed, replicate } = streams;
         let indirect = self.readout.indirect();
-        let beams = self.readout.beams();
-        let settings = MapSettings { global, caustic, volume, beams, indirect, seed, replicate };
+        let media = self.readout.settings(scene)?.media();
+        let settings = MapSettings { global, caustic, volume, media, indirect, seed, replicate };
         let learned = ImportanceSettings { seed, replicate, ..Default::default() };
         let learn = || Importance::of(scene, camera, indirect, &learned, watch);
         let importance = self.readout.is_by_importance().then(learn).transpose()?;
@@ -126,12 +125,9 @@ impl Request {
                 With::Light => fill(&Method::Light(scene))?,
                 With::Photons => {
                     let maps = self.maps(scene, camera, streams, watch)?;
-                    let stored = [&maps.global, &maps.caustic, &maps.volume];
-                    let mut stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
-                    stored[2] += maps.beams.as_ref().map_or(0, BeamMap::stored);
                     let settings = match read {
                         Some(settings) => settings,
-                        None => *read.insert(self.readout.suited(&settings, stored)?),
+                        None => *read.insert(self.readout.suited(&settings, maps.stored())?),
                     };
                     fill(&Method::Photons(Mapper::new(scene, &maps, &settings)))?
                 }

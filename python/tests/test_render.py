@@ -28,6 +28,10 @@ LAYERS = ["emission", "direct", "caustic", "indirect", "single", "multiple"]
             ["--samples", 1, "--gather-rays", 0, "--beam-radius", 0.1, "--beam-blur", "2d", "--beam-length", "whole"],
             dict(samples=1, gather_rays=0, beam_radius=0.1, beam_blur="2d", beam_length="whole"),
         ),
+        (
+            ["--samples", 1, "--gather-rays", 2, "--beam-radius", 0.1, "--planes", "--volume", 2000, "--importance"],
+            dict(samples=1, gather_rays=2, beam_radius=0.1, planes=True, volume=2000, importance=True),
+        ),
     ],
 )
 def test_the_same_picture_as_the_program(words, more, turbid_program, tmp_path):
@@ -98,9 +102,12 @@ def test_wrong_settings():
     assert told(near=-1).startswith("fogbox: near is -1") and told(adapt=float("nan")).startswith("fogbox: adapt is NaN")
     assert told(step=1e-12).startswith("fogbox: step is ") and told(step=-1.0).startswith("fogbox: step is -1")
     assert told(beam_length="whole").endswith("allowed: with beam_radius")
+    assert told(planes=True, width=8).endswith("allowed: beams beside them (a beam radius)")
+    assert told(planes=True, ray_radius=1).endswith("ray_radius reads points and planes flights; allowed: one of them")
+    assert told(ray_ends="own", ray_radius=1).startswith("fogbox: ray_ends: rays end for each photon or beam in one")
     assert told(beam_length="long", beam_radius=1) == "beam_length is 'long'; allowed: sampled, whole"
     assert told(beam_radius=1, boundary="reflection").endswith("of balls; allowed of rays that are read as a whole: none, clipped")
-    assert told(ray_radius=1, volume_k=20).endswith("volume_k is of balls; allowed: without ray_radius and beam_radius")
+    assert told(ray_radius=1, volume_k=20).endswith("volume_k is of balls; allowed: without ray_radius, beam_radius and planes")
     assert told(edges="soft").startswith("edges is 'soft'") and told(kernel="round").startswith("kernel is 'round'")
     assert told(width=16384, height=16384).startswith("fogbox: width, height: camera.width times camera.height")
     assert "of memory" in told(volume="emit:1e12", width=8)

@@ -87,7 +87,7 @@ _METHODS = {
     )
     | {"guide": _PATHS},
     "render": dict.fromkeys(
-        "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius ray_k beam_radius beam_blur beam_length kernel caustic_kernel "
+        "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius ray_k beam_radius beam_blur beam_length ray_ends planes kernel caustic_kernel "
         "gather_rays near step step_rule adapt spacing jitter boundary edges".split(),
         ("photons",),
     )
@@ -361,6 +361,8 @@ def render(
     beam_radius: Optional[float] = None,
     beam_blur: str = "1d",
     beam_length: str = "sampled",
+    ray_ends: str = "cut",
+    planes: bool = False,
     kernel: str = "uniform",
     caustic_kernel: str = "cone",
     gather_rays: int = 64,
@@ -398,6 +400,9 @@ def render(
     beam_radius : the same from photons' flights, stored as beams, which ``volume`` then counts; in place of ``ray_radius`` [L]
     beam_blur : dimensions that beams are blurred in: 1d or 2d
     beam_length : sampled, or whole: to the end of each medium, with what passes
+    ray_ends : as in :func:`measure`
+    planes : read light that media scatter twice and more from planes of flights, without blur; beside bodies ``beam_radius`` is needed
+        too, for light that comes from them; in homogeneous media whose extinction is the same in all channels, without glass
     gather_rays : rays of a final gathering; 0 reads the global map where the eye looks: fast, and blotchy
     near : rays of a final gathering shorter than this are traced on [L]
     step, step_rule, adapt, jitter : the march through media; the longest step is in [L]
@@ -419,6 +424,8 @@ def render(
         beam_radius=_optional_real("beam_radius", beam_radius),
         beam_blur=beam_blur,
         beam_length=beam_length,
+        ray_ends=ray_ends,
+        planes=_flag("planes", planes),
         kernel=kernel,
         caustic_kernel=caustic_kernel,
         gather_rays=_count("gather_rays", gather_rays, 0, 1_000_000),

@@ -4,14 +4,28 @@ use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings,
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
 use super::{
     BallSum, BeamBlur, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount,
-    PlaneEstimator, RayEnds, RayEstimator,
+    OwnEnds, PlaneEstimator, RayEnds, RayEstimate, RayEstimator,
 };
 use crate::Spectrum;
-use crate::math::{Positive, cosine_pair};
-use crate::photons::beams::BeamLength;
+use crate::error::{Error, Result};
+use crate::geometry::Shape;
+use crate::math::{Positive, Ray, cosine_pair};
+use crate::medium::Medium;
+use crate::photons::beams::{BeamLength, BeamMap};
+use crate::photons::tree::Radii;
 use crate::photons::{Photon, PhotonMap};
+use crate::scene::Scene;
 use glam::DVec3;
 use std::num::NonZeroUsize;
+
+/// A map that is read along whole rays.
+#[derive(Debug, Clone, Copy)]
+pub enum Stretched<'a> {
+    /// Photons, with a radius for each, where there is one.
+    Points(&'a PhotonMap, Option<&'a Radii>),
+    /// Flights.
+    Beams(&'a BeamMap),
+}
 
 /// How light at a point of a medium is estimated from the photons about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -178,6 +192,56 @@ impl Estimator {
             radius,
             is_clipped: treatment != Treatment::None,
         })
+    }
+
+    /// Checks that rays end in a scene as they are asked to.
+    ///
+    /// # Errors
+    /// `Error::Scene` for ends of their own where rays are read point by point or from planes, and in scenes other than one homogeneous
+    /// region with nothing in it
+    pub fn check_ends(&self, scene: &Scene) -> Result<()> {
+        if self.ray_ends == RayEnds::Cut {
+            return Ok(());
+        }
+        if self.has_planes || !self.reads_rays() {
+            return Err(Error::Scene(
+                "ends of their own are those of photons and beams about rays; allowed: a ray radius or a beam radius, no planes".into(),
+            ));
+        }
+        let is_alone = scene.regions().len() == 1 && scene.media().len() == 1 && !scene.plan().has_surfaces;
+        let has_lamps = scene.lights().iter().any(|light| light.body().is_some());
+        let is_layer = scene.regions().iter().all(|region| matches!(region.shape, Shape::Slab(_)));
+        let is_open = scene.periodic_cell().is_none() || is_layer;
+        match is_alone && !has_lamps && is_open && scene.medium(0).is_homogeneous() {
+            true => Ok(()),
+            false => Err(Error::Scene(
+                "rays end for each photon or beam in one homogeneous region with nothing in it, in a periodic cell a slab; allowed \
+                 otherwise: ends that are cut"
+                    .into(),
+            )),
+        }
+    }
+
+    /// What the one medium of a scene scatters to the near end of a ray [W/(L^2 sr)], each photon or beam ending for itself.
+    ///
+    /// # Returns
+    /// not a number where [`Estimator::check_ends`] refuses
+    pub fn radiance_of_own_ends(&self, scene: &Scene, stored: Stretched<'_>, ray: &Ray) -> RayEstimate {
+        let of_none = |value| RayEstimate { value: Spectrum::grey(value), found: 0, rejected: 0 };
+        let (Some(region), Medium::Homogeneous(even)) = (scene.regions().first(), scene.medium(0)) else {
+            return of_none(f64::NAN);
+        };
+        let medium = scene.medium(0);
+        let ends = |radius: Positive| OwnEnds::new(even, &region.shape, ray, radius.get());
+        let estimate = match (stored, self.of_rays(), self.of_beams()) {
+            (Stretched::Points(map, radii), Some(of_rays), _) => ends(of_rays.radius)
+                .map(|ends| of_rays.radiance_of_own_ends((map, radii), (ray, &ends), medium)),
+            (Stretched::Beams(map), _, Some(of_beams)) => ends(of_beams.radius)
+                .map(|ends| of_beams.radiance_of_own_ends(map, (ray, &ends), (0, medium), self.beam_blur)),
+            _ => Some(of_none(f64::NAN)),
+        };
+        // Nothing of the medium is ahead.
+        estimate.unwrap_or(of_none(0.0))
     }
 
     /// The smallest of the radii that it names, of a point or a ray \[L\]; those about beams are no matter of single precision.

@@ -36,7 +36,7 @@ pub use blur::BeamBlur;
 pub use directional::{CosinePairs, Directional};
 pub use disc_share::{cap_share, disc_share};
 pub use ends::{OwnEnds, RayEnds};
-pub use estimator::Estimator;
+pub use estimator::{Estimator, Stretched};
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
 pub use plane::PlaneEstimator;

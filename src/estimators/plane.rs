@@ -14,9 +14,9 @@ use crate::scene::Scene;
 /// L = sum P sigma_s sigma_s' p(w1, -d) T(s) / (N |d.(w0 x w1)|),
 ///
 /// P the flight's power at t, sigma_s there and sigma_s' at the ray. Both legs have lengths that were drawn, and nothing passes into the
-/// sum beside them; the second one reaches the ray if the way is not deeper than what was drawn and nothing stands in it. Planes of
-/// flights of order n bring light of order n + 2, scattered twice at least: light that is scattered once is read otherwise
-/// ([`super::BeamEstimator`]).
+/// sum beside them; the second one reaches the ray if the way is not deeper than what was drawn and no body stands in it, not even a filter.
+/// Planes of flights of order n bring light of order n + 2, scattered twice at least: light that is scattered once, and light that comes
+/// from a body to where it is scattered last, is read otherwise ([`super::BeamEstimator`]).
 ///
 /// # Limits
 /// The variance is infinite in diffuse light: 1/|d.(w0 x w1)| exceeds x in 2 x^-2 of what is found, and the squared error of N photons
@@ -50,10 +50,10 @@ impl PlaneEstimator {
         let medium = scene.medium(number);
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
         let is_known = map.met(ray, span, |plane, crossing| {
-            let Some(through) = reaches(scene, plane, crossing) else {
+            if !reaches(scene, plane, crossing) {
                 rejected += 1;
                 return;
-            };
+            }
             found += 1;
             let (one_minus_mu, one_plus_mu) = cosine_pair(plane.dir, -ray.dir);
             let size = crossing.determinant;
@@ -63,7 +63,7 @@ impl PlaneEstimator {
             let from = scene.medium(plane.leg.medium as usize);
             let (start, end) = (plane.leg.at(first), plane.at([first, second]));
             let turned = plane.leg.power_at(first, from) * (from.sigma_t(start) * from.albedo(start));
-            let turned = turned * through * (medium.sigma_t(end) * medium.albedo(end));
+            let turned = turned * (medium.sigma_t(end) * medium.albedo(end));
             sum += turned * passed(crossing.along_ray) * weight;
         });
         let scale = 1.0 / map.emitted() as f64;
@@ -72,17 +72,17 @@ impl PlaneEstimator {
     }
 }
 
-/// What filters let through of the second leg; none if it ends before the ray, or something stands in its way.
-fn reaches(scene: &Scene, plane: &Plane, crossing: &PlaneCrossing) -> Option<Spectrum> {
+/// Whether the second leg reaches the ray before it ends, or at a body.
+fn reaches(scene: &Scene, plane: &Plane, crossing: &PlaneCrossing) -> bool {
     let [first, second] = crossing.along_legs;
     if planted(Fault::PlanesUnseen) {
-        return Some(Spectrum::ONE);
+        return true;
     }
     let way = Ray::new(plane.leg.at(first), plane.dir);
     let is_alone = scene.media().len() == 1;
     // Alone, a region is all about the way: the reach said it.
     if !is_alone && scene.optical_depth(&way, second, scene.interior_at(way.origin))[0] >= plane.depth {
-        return None;
+        return false;
     }
-    if !scene.plan().has_surfaces { Some(Spectrum::ONE) } else { scene.sees(&way, None, second) }
+    scene.hit(&way, None).is_none_or(|found| found.hit.t >= second)
 }

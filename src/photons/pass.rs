@@ -14,7 +14,7 @@ use crate::rng::{Purpose, Stream, Work};
 use crate::scene::{Orders, Quantity, Scene, Sensor, Target};
 use crate::stats::Moments;
 use crate::surface::Surface;
-use crate::transport::{Flags, NoProgress, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
+use crate::transport::{NoProgress, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
 use glam::{DVec2, DVec3};
 use std::ops::{AddAssign, Range};
 use std::time::{Duration, Instant};
@@ -74,8 +74,8 @@ pub trait Storage: Sync {
         false
     }
 
-    /// Whether the flight of a photon of this order, which has met this before, is stored as beams in the media that it crosses.
-    fn on_flight(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
+    /// Whether the flight of a photon that sets out is stored as beams in the media that it crosses.
+    fn on_flight(&self, _history: u64, _walker: &Walker) -> bool {
         false
     }
 
@@ -84,8 +84,8 @@ pub trait Storage: Sync {
         false
     }
 
-    /// Whether a plane of the flight of a photon of this order, which has met this before, is stored in each medium that it crosses.
-    fn on_plane(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
+    /// Whether a plane of the flight of a photon that sets out is stored in each medium that it crosses.
+    fn on_plane(&self, _history: u64, _walker: &Walker) -> bool {
         false
     }
 }
@@ -493,8 +493,8 @@ impl Block<'_> {
             return;
         }
         let is_kept = [
-            self.has_beams && self.store.on_flight(self.history, walker.order, walker.flags),
-            self.has_planes && self.store.on_plane(self.history, walker.order, walker.flags),
+            self.has_beams && self.store.on_flight(self.history, walker),
+            self.has_planes && self.store.on_plane(self.history, walker),
         ];
         if is_kept == [false; 2] {
             return;

@@ -6,7 +6,7 @@ use super::reach::has_extinction;
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Boundary, Treatment};
-use crate::estimators::{BeamBlur, Estimate, Estimator, OwnEnds, PlaneEstimator, RayEnds};
+use crate::estimators::{BeamBlur, Estimate, Estimator, PlaneEstimator, RayEnds, Stretched};
 use crate::geometry::Shape;
 use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
 use crate::integrators::{Guides, March, StepRule, along, path};
@@ -217,7 +217,12 @@ fn radiance(
         });
     }
     if estimator.ray_ends == RayEnds::Own {
-        sum += radiance_of_own_ends(scene, map, ray, estimator);
+        let stored = match map {
+            AskedMap::Points(map, radii) => Stretched::Points(map, radii),
+            AskedMap::Beams(map) => Stretched::Beams(map),
+            AskedMap::Planes(..) => return Spectrum::grey(f64::NAN),
+        };
+        sum += estimator.radiance_of_own_ends(scene, stored, ray).value;
         result.gathers += 1;
         return sum;
     }
@@ -276,24 +281,6 @@ fn radiance(
         }
     }
     sum
-}
-
-/// What the one medium of a scene scatters along a ray, each photon or beam ending for itself.
-fn radiance_of_own_ends(scene: &Scene, map: AskedMap<'_>, ray: &Ray, estimator: &Estimator) -> Spectrum {
-    let (Some(region), Medium::Homogeneous(even)) = (scene.regions().first(), scene.medium(0)) else {
-        return Spectrum::grey(f64::NAN);
-    };
-    let medium = scene.medium(0);
-    let ends = |radius: Positive| OwnEnds::new(even, &region.shape, ray, radius.get());
-    let value = match (map, estimator.of_rays(), estimator.of_beams()) {
-        (AskedMap::Points(map, radii), Some(of_rays), _) => ends(of_rays.radius)
-            .map(|ends| of_rays.radiance_of_own_ends((map, radii), (ray, &ends), medium).value),
-        (AskedMap::Beams(map), _, Some(of_beams)) => ends(of_beams.radius).map(|ends| {
-            of_beams.radiance_of_own_ends(map, (ray, &ends), (0, medium), estimator.beam_blur).value
-        }),
-        _ => Some(Spectrum::grey(f64::NAN)),
-    };
-    value.unwrap_or(Spectrum::ZERO)
 }
 
 /// The part of a span that is seen: as far as the thinnest channel reaches, where that is known.

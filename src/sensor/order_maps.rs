@@ -5,9 +5,9 @@ use crate::estimators::Estimator;
 use crate::photons::beams::{Beam, BeamLength, BeamMap};
 use crate::photons::planes::{Plane, PlaneMap};
 use crate::photons::tree::Radii;
-use crate::photons::{Emitter, Flags, Histories, Part, Pass, Photon, PhotonMap, Photons, Run, Storage};
+use crate::photons::{Emitter, Histories, Part, Pass, Photon, PhotonMap, Photons, Run, Storage};
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
-use crate::transport::{NoProgress, Progress};
+use crate::transport::{NoProgress, Progress, Walker};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What radiance, and fluence, is read from.
@@ -163,12 +163,12 @@ impl Storage for Kept<'_> {
         !self.ranges.planes.is_empty()
     }
 
-    fn on_plane(&self, _history: u64, order: u32, _flags: Flags) -> bool {
-        self.holds(2, order)
+    fn on_plane(&self, _history: u64, walker: &Walker) -> bool {
+        self.holds(2, walker.order)
     }
 
-    fn on_flight(&self, _history: u64, order: u32, _flags: Flags) -> bool {
-        self.holds(1, order)
+    fn on_flight(&self, _history: u64, walker: &Walker) -> bool {
+        self.holds(1, walker.order)
     }
 }
 

@@ -10,7 +10,6 @@ use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::{BeamBlur, Estimator, Gather, RayEnds};
-use crate::geometry::Shape;
 use crate::math::wrap;
 use crate::photons::beams;
 use crate::photons::planes::{self, check_planes};
@@ -382,24 +381,7 @@ pub(super) fn check_rays(scene: &Scene, sensors: &[Sensor], estimator: &Estimato
     if estimator.ray_ends == RayEnds::Cut {
         return Ok(());
     }
-    if estimator.has_planes || !estimator.reads_rays() {
-        return refuse(
-            "ends of their own are those of photons and beams about rays; allowed: a ray radius or a beam radius, no planes",
-        );
-    }
-    let is_alone = scene.regions().len() == 1 && scene.media().len() == 1 && !scene.plan().has_surfaces;
-    let has_lamps = scene.lights().iter().any(|light| light.body().is_some());
-    let is_layer = scene.regions().iter().all(|region| matches!(region.shape, Shape::Slab(_)));
-    if !is_alone
-        || has_lamps
-        || !scene.medium(0).is_homogeneous()
-        || (scene.periodic_cell().is_some() && !is_layer)
-    {
-        return refuse(
-            "rays end for each photon or beam in one homogeneous region with nothing in it, in a periodic cell a slab; allowed \
-             otherwise: ends that are cut",
-        );
-    }
+    estimator.check_ends(scene).map_err(|error| error.within(&format!("sensor {}", sensor.name)))?;
     let along_faces = |sensor: &&Sensor| match &sensor.quantity {
         Quantity::Radiance(ray) => ray.dir.z.abs() < LEAST_ACROSS,
         Quantity::Binned(Binned::Radiance { dir, .. }) => dir.z.abs() < LEAST_ACROSS,

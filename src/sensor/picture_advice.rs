@@ -17,7 +17,7 @@ use crate::integrators::mapper::{Mapper, Report, Settings};
 use crate::integrators::{Layer, path};
 use crate::math::{exp, ln};
 use crate::photons::PhotonMap;
-use crate::photons::maps::{Amount, Indirect, MapReport, MapSettings, fill};
+use crate::photons::maps::{Amount, Indirect, MapReport, MapSettings, MediumSamples, fill};
 use crate::rng::Stream;
 use crate::scene::{Camera, Scene};
 use crate::stats::{Interval, fit_line, student_critical};
@@ -264,7 +264,7 @@ impl PicturePilot {
                     global,
                     caustic,
                     volume,
-                    beams: None,
+                    media: MediumSamples::Points,
                     indirect: pilot.indirect,
                     seed: pilot.seed,
                     replicate,

@@ -14,7 +14,7 @@ use turbid::photons::{Emitter, Flags, Histories, Pass, Photon, Run, Storage};
 use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::stats::Moments;
-use turbid::transport::NoProgress;
+use turbid::transport::{NoProgress, Walker};
 
 /// A beam of power 1 in the first medium.
 pub fn beam(start: DVec3, dir: DVec3, length: f64, kind: BeamKind) -> Beam {
@@ -187,7 +187,7 @@ impl Storage for Flights {
         self.is_whole
     }
 
-    fn on_flight(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
+    fn on_flight(&self, _history: u64, _walker: &Walker) -> bool {
         true
     }
 }

@@ -9,7 +9,7 @@ use turbid::estimators::Gather;
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::integrators::{Adaptive, March};
 use turbid::math::{Positive, Ray};
-use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, MediumSamples, fill};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Region;
 use turbid::stats::Moments;
@@ -36,7 +36,7 @@ pub fn steps_that_share_a_gather_have_their_sum() {
             global: Amount::Emitted(1),
             caustic: Amount::Emitted(1),
             volume: Amount::Stored(3000),
-            beams: None,
+            media: MediumSamples::Points,
             indirect: Indirect::Seen,
             seed: 3,
             replicate: 0,

@@ -85,6 +85,14 @@ fn sizes_and_numbers_out_of_range() {
         &["--spacing", "2", "--ray-radius", "0.1"],
         &["--spacing is about steps; allowed: without --ray-radius"],
     );
+    refuse(&["--planes", "--ray-radius", "0.1"], &["--planes", "--ray-radius"]);
+    refuse(&["--planes", "--volume-k", "20"], &["--planes", "--volume-k"]);
+    refuse(&["--planes"], &["allowed: beams beside them (a beam radius)"]);
+    refuse(&["--ray-ends", "own"], &["--ray-ends is own", "allowed: with --ray-radius or --beam-radius"]);
+    refuse(
+        &["--ray-ends", "own", "--ray-radius", "1"],
+        &["--ray-ends: rays end for each photon or beam in one homogeneous region"],
+    );
     refuse(&["--plan", "none"], &["--plan", "allowed: auto, full"]);
     refuse(&["--glboal", "3"], &["--glboal"]);
     refuse(&["--threads", "0"], &["--threads"]);

@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::light::{EmissionCell, Light};
-use turbid::photons::maps::{Amount, Indirect, MapReport, MapSettings, fill};
+use turbid::photons::maps::{Amount, Indirect, MapReport, MapSettings, MediumSamples, fill};
 use turbid::photons::{Emitter, Flags, Histories, Photon, Run};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Region, Scene};
@@ -333,7 +333,7 @@ fn report(has_room: bool) -> MapReport {
         global,
         caustic,
         volume,
-        beams: None,
+        media: MediumSamples::Points,
         indirect: Indirect::Gathered,
         seed: 1,
         replicate: 0,

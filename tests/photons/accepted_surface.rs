@@ -14,7 +14,7 @@ use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::integrators::path;
 use turbid::light::{Light, Spot};
 use turbid::math::{Ray, sin_cos};
-use turbid::photons::maps::{Indirect, MapReport, Maps, fill};
+use turbid::photons::maps::{Indirect, Maps, fill};
 use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Scene;
@@ -241,14 +241,7 @@ impl Specimen {
 
 /// Of 1000 photons sent out.
 fn global_map(photons: Vec<Photon>) -> Maps {
-    Maps {
-        global: Some(PhotonMap::new(photons, 1000).unwrap()),
-        caustic: None,
-        volume: None,
-        beams: None,
-        indirect: Indirect::Seen,
-        report: MapReport::default(),
-    }
+    Maps { global: Some(PhotonMap::new(photons, 1000).unwrap()), ..Maps::none(Indirect::Seen) }
 }
 
 /// With more photons than a curved body has within its reach the last takes what there is.

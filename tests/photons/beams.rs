@@ -22,7 +22,7 @@ use turbid::light::{Light, Section};
 use turbid::math::{FOUR_PI, Interval, Positive, Ray, exp, warp};
 use turbid::medium::Medium;
 use turbid::photons::beams::{Beam, BeamKind, BeamLength, BeamMap};
-use turbid::photons::maps::{Indirect, fill};
+use turbid::photons::maps::{Indirect, MapSettings, MediumSamples, fill};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_given_photons, by_photons};
@@ -461,7 +461,7 @@ fn a_furnace_of_fog() {
         let mut moments = Moments::new();
         for replicate in 0..64 {
             let filling = crate::checks::ledger::filling(4000, Indirect::Seen, 2, replicate);
-            let filling = turbid::photons::maps::MapSettings { beams: Some(length), ..filling };
+            let filling = MapSettings { media: MediumSamples::Beams(length), ..filling };
             let maps = fill(&scene, &filling, &NoProgress).unwrap();
             assert!(maps.volume.is_none() && maps.beams.as_ref().is_some_and(|beams| beams.stored() > 4000));
             let mapper = Mapper::new(&scene, &maps, &settings);

@@ -9,7 +9,7 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{
-    Amount, Emitted, Indirect, MapSettings, Maps, fill_counted, fill_counted_by_importance,
+    Amount, Emitted, Indirect, MapSettings, Maps, MediumSamples, fill_counted, fill_counted_by_importance,
 };
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Scene, SceneFile};
@@ -34,7 +34,7 @@ fn maps(
         global: amount,
         caustic: amount,
         volume: amount,
-        beams: None,
+        media: MediumSamples::Points,
         indirect,
         seed: 5,
         replicate,

@@ -20,7 +20,7 @@ use turbid::integrators::{Layers, StepRule, path};
 use turbid::light::Faces;
 use turbid::math::{Asymmetry, FOUR_PI, Positive, Ray, cosine_pair, exp, exp_m1, warp};
 use turbid::phase::{Phase, PhaseFunction};
-use turbid::photons::maps::{Indirect, MapReport, Maps, fill};
+use turbid::photons::maps::{Indirect, Maps, fill};
 use turbid::photons::{Flags, Photon, PhotonMap, Photons};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Region, Scene};
@@ -194,14 +194,7 @@ fn emitting_fog() {
 #[test]
 fn chosen_steps_keep_the_mean() {
     let scene = point_light::fog(Spectrum::ONE, Spectrum::grey(0.5));
-    let maps = Maps {
-        global: None,
-        caustic: None,
-        volume: None,
-        beams: None,
-        indirect: Indirect::Seen,
-        report: MapReport::default(),
-    };
+    let maps = Maps::none(Indirect::Seen);
     let expected = point_light::single_scattering(1.0, 0.5, point_light::BESIDE);
     let adaptive = Adaptive { tolerance: 0.5, shortest: Positive::new("the shortest step", 0.0125).unwrap() };
     // Mean, variance and steps of each way.
@@ -257,14 +250,7 @@ fn flat_surfaces_are_even_up_to_their_edges() {
                 }
             });
             let global = PhotonMap::new(photons.collect::<Photons>(), N).unwrap();
-            let maps = Maps {
-                global: Some(global),
-                caustic: None,
-                volume: None,
-                beams: None,
-                indirect: Indirect::Seen,
-                report: MapReport::default(),
-            };
+            let maps = Maps { global: Some(global), ..Maps::none(Indirect::Seen) };
             let mapper = Mapper::new(&scene, &maps, &settings);
             let spots = [(0.001, 0.001), (0.5, 0.01), (0.97, 0.5), (0.999, 0.98), (0.05, 0.4), (0.5, 0.5)];
             let seen = spots.map(|(x, y)| {

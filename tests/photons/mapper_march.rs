@@ -15,7 +15,7 @@ use turbid::integrators::{March, StepRule, path};
 use turbid::light::{Light, Sun};
 use turbid::math::{FOUR_PI, Positive, Ray, exp, exp_m1};
 use turbid::medium::{Density, Grid, HeightFog, Heterogeneous, Medium};
-use turbid::photons::maps::{Indirect, MapReport, Maps};
+use turbid::photons::maps::{Indirect, Maps};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
@@ -24,14 +24,7 @@ use turbid::transport::NoProgress;
 
 /// Maps for what needs none.
 fn nothing() -> Maps {
-    Maps {
-        global: None,
-        caustic: None,
-        volume: None,
-        beams: None,
-        indirect: Indirect::Seen,
-        report: MapReport::default(),
-    }
+    Maps::none(Indirect::Seen)
 }
 
 fn marching(scene: &Scene, march: March) -> Settings {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::photons::maps::{
-    Amount, Indirect, MOST_A_STORED, MapSettings, Maps, PILOT, counts, fill, forecast,
+    Amount, Indirect, MOST_A_STORED, MapSettings, Maps, MediumSamples, PILOT, counts, fill, forecast,
 };
 use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::scene::Scene;
@@ -41,7 +41,7 @@ fn settings(indirect: Indirect) -> MapSettings {
         global: amount,
         caustic: amount,
         volume: amount,
-        beams: None,
+        media: MediumSamples::Points,
         indirect,
         seed: 1,
         replicate: 0,

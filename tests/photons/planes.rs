@@ -2,6 +2,7 @@
 //! refused, and threads.
 
 use crate::checks::beams::{beam, by_maps};
+use crate::checks::ledger::{Room, layers_are_those_of_the_reference, mirror, reference, settings};
 use crate::checks::media::{layered, varying};
 use crate::checks::planes::{
     Laser, a_laser_scattered_twice, a_plane_end_on_counts_in_full, in_planes, one_plane_by_hand,
@@ -17,16 +18,19 @@ use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Shape;
+use turbid::integrators::mapper::Settings;
 use turbid::math::{Interval, Positive, Ray, warp};
 use turbid::medium::Medium;
 use turbid::photons::beams::BeamKind;
+use turbid::photons::maps::Indirect;
 use turbid::photons::planes::{Plane, PlaneMap, PlaneTree};
-use turbid::photons::{Emitter, Flags, Histories, Pass, Photon, Run, Storage};
+use turbid::photons::{Emitter, Histories, Pass, Photon, Run, Storage};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
+use turbid::scene::{Object, Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_given_photons, by_photons, by_photons_in_passes, forecast};
 use turbid::stats::Moments;
-use turbid::transport::NoProgress;
+use turbid::surface::{Filter, Surface};
+use turbid::transport::{NoProgress, Walker};
 
 #[test]
 fn by_hand() {
@@ -84,7 +88,7 @@ impl Storage for Both {
         true
     }
 
-    fn on_flight(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
+    fn on_flight(&self, _history: u64, _walker: &Walker) -> bool {
         true
     }
 
@@ -92,7 +96,7 @@ impl Storage for Both {
         self.0
     }
 
-    fn on_plane(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
+    fn on_plane(&self, _history: u64, _walker: &Walker) -> bool {
         true
     }
 }
@@ -281,6 +285,33 @@ fn radiance_in_planes_is_that_of_paths() {
                 );
             }
         }
+    }
+}
+
+/// The mapper keeps its ledger by planes, with beams for what comes from bodies: a foggy room with a mirror and a tinted pane, read
+/// where the eye looks and by a final gathering.
+#[test]
+fn a_room_with_a_mirror_and_a_pane_keeps_its_ledger() {
+    let room = Room {
+        floor: mirror(),
+        sigma_t: Spectrum::grey(0.5),
+        albedo: Spectrum::rgb(0.9, 0.6, 0.8),
+        g: 0.3,
+        is_colored: true,
+        has_glass: false,
+        has_water: false,
+    };
+    let mut parts = room.parts();
+    let pane = rectangle(DVec3::new(1.2, 0.2, 0.3), DVec3::new(0.6, 0.5, 0.0), DVec3::Z);
+    let tinted = Filter::new(Spectrum::rgb(0.7, 0.8, 0.3)).unwrap();
+    parts.objects.push(Object { shape: Shape::Rectangle(pane), surface: Surface::Filter(tinted) });
+    let scene = Scene::new(parts).unwrap();
+    let paths = reference(&scene, 31);
+    let radius = Positive::new("the radius", 0.05).unwrap();
+    for (rays, indirect, seed) in [(1, Indirect::Seen, 31), (4, Indirect::Gathered, 32)] {
+        let usual = settings(rays);
+        let read = Settings { volume: usual.volume.along_beams(radius).in_planes(), ..usual };
+        layers_are_those_of_the_reference((&scene, &paths), indirect, &read, 4000, seed);
     }
 }
 

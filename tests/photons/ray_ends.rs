@@ -3,6 +3,7 @@
 
 use crate::against_exact::henyey_greenstein::{medium, referee};
 use crate::checks::beams::{across, by_maps, looked_into, means_by_maps};
+use crate::checks::ledger;
 use crate::checks::slab::exact;
 use crate::support::run::{paths, sensor};
 use crate::support::scenes::{Incidence, bounded, cuboid, homogeneous, point_light, region, sphere};
@@ -12,10 +13,15 @@ use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use turbid::Spectrum;
 use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel, RayEnds};
-use turbid::math::{Positive, Ray};
+use turbid::integrators::mapper::{Mapper, Settings};
+use turbid::integrators::path;
+use turbid::math::{Frame, Positive, Ray};
 use turbid::photons::beams::BeamLength;
+use turbid::photons::maps::{Indirect, MapSettings, fill};
+use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
+use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
 fn of_points(kernel: Kernel, radius: f64) -> Estimator {
@@ -124,6 +130,51 @@ fn rays_begin_anywhere() {
         let beside = measured[3][0];
         assert!(beside.mean() > 5.0 * beside.std_error(), "{beside:?}");
         assert!(beside.mean() < 0.3 * measured[0][0].mean(), "{beside:?}");
+    }
+}
+
+/// A picture of a cube, looked at aslant by parallel rays that pass it farther than the radius: nothing is lost of the light that is
+/// scattered twice and more, whatever the radius, by points of one radius and of their own, by beams drawn and long. Cut, a part is.
+#[test]
+fn a_picture_loses_nothing() {
+    let medium = homogeneous(Spectrum::grey(2.0), Spectrum::grey(0.8), 0.3);
+    let regions = vec![Region { shape: cuboid(DVec3::ZERO, DVec3::ONE), medium }];
+    let scene = bounded(regions, vec![], vec![point_light(DVec3::new(0.3, 0.6, 2.5), Spectrum::ONE)]);
+    let frame = Frame::new(DVec3::new(0.48, 0.6, 0.64));
+    // One in each cell of a grid.
+    let ray = |history: u64, stream: &mut Stream| {
+        let ([u, v], [i, j]) = (stream.pair(), [history % 20, history / 20 % 20].map(|cell| cell as f64));
+        let [x, y] = [i + u, j + v].map(|cells| 2.5 * (cells / 20.0 - 0.5));
+        Ray::new(DVec3::splat(0.5) + frame.to_world(DVec3::new(x, y, -3.0)), frame.to_world(DVec3::Z))
+    };
+    let mut reference = Moments::new();
+    for history in 0..1 << 16 {
+        let stream = &mut Stream::new(57, Purpose::Paths, 0, history);
+        reference.push(path::layers(&scene, ray(history, stream), None, 0, stream).0.multiple[0]);
+    }
+    let (expected, error) = (reference.mean(), reference.std_error());
+    let [points, beams] = [of_points(Kernel::Uniform, 0.3), of_beams(0.3, BeamBlur::OneD)];
+    let of_nearest = points.of_nearest(NonZeroUsize::new(20).unwrap());
+    let cut = points.ending(RayEnds::Cut);
+    for volume in [points, of_nearest, beams, beams.of_length(BeamLength::Whole), cut] {
+        let settings = Settings { volume, ..ledger::settings(1) };
+        let mut moments = Moments::new();
+        for replicate in 0..64 {
+            let filling = ledger::filling(2000, Indirect::Seen, 57, replicate);
+            let filling = MapSettings { media: settings.media(), ..filling };
+            let maps = fill(&scene, &filling, &NoProgress).unwrap();
+            let mapper = Mapper::new(&scene, &maps, &settings);
+            mapper.check_radii().unwrap();
+            let seen = (0..400).map(|history| {
+                let stream = &mut Stream::new(57, Purpose::Paths, replicate + 1, history);
+                mapper.radiance(ray(history, stream), None, 0, stream).0.multiple[0]
+            });
+            moments.push(seen.sum::<f64>() / 400.0);
+        }
+        match volume.ray_ends {
+            RayEnds::Own => verdict::agrees(&volume.name(), &moments, (expected, error), 0.15 * expected, 57),
+            RayEnds::Cut => verdict::rejects(&volume.name(), &moments, expected, 57),
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use turbid::math::{Asymmetry, Interval, Positive, Ray, exp, ln_1p};
 use turbid::medium::{Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::Phase;
 use turbid::photons::importance::{Importance, ImportanceSettings};
-use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, MediumSamples, fill};
 use turbid::photons::{Histories, MOST_EVENTS, check_end, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{
@@ -200,7 +200,7 @@ fn every_method_refuses_a_room_that_keeps_light() {
         global: amount,
         caustic: amount,
         volume: amount,
-        beams: None,
+        media: MediumSamples::Points,
         indirect,
         seed: 1,
         replicate: 0,

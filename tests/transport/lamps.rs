@@ -15,7 +15,7 @@ use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::integrators::{Layer, path};
 use turbid::light::{Area, Beam, Light, Section};
 use turbid::math::{Frame, Ray, exp};
-use turbid::photons::maps::{Indirect, MapReport, Maps};
+use turbid::photons::maps::{Indirect, Maps};
 use turbid::scene::{Interior, Object, Orders, Quantity, Scene, SceneParts};
 use turbid::sensor::sample;
 use turbid::surface::{Filter, Mirror, Surface};
@@ -97,14 +97,7 @@ fn small_volume_sources_are_aimed_at() {
         let off = (by_paths.mean() - radiance).abs().max(by_paths.std_error());
         let allowed = 4.0 * (radius / distance) * (radius / distance) * radiance;
         assert!(off < allowed, "{what}, paths: {} for {radiance}, {off:e} off", by_paths.mean());
-        let maps = Maps {
-            global: None,
-            caustic: None,
-            volume: None,
-            beams: None,
-            indirect: Indirect::Gathered,
-            report: MapReport::default(),
-        };
+        let maps = Maps::none(Indirect::Gathered);
         let settings = Settings::for_scene(&scene, 100).unwrap();
         let mapper = Mapper::new(&scene, &maps, &settings);
         let by_mapper = numbers(N, 5, |stream| mapper.radiance(ray, None, 0, stream).0[Layer::Direct][0]);

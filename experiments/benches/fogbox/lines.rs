@@ -86,7 +86,7 @@ fn round(scene: &Scene, camera: &Camera, way: &Way, replicate: u64) -> Result<(R
         global: Amount::Emitted(1),
         caustic: Amount::Emitted(1),
         volume: Amount::Stored(way.stored),
-        beams: settings.volume.beam_radius.map(|_| settings.volume.beam_length),
+        media: settings.media(),
         indirect: Indirect::Seen,
         seed: 1,
         replicate,

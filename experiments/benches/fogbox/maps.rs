@@ -7,7 +7,7 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::March;
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::math::Positive;
-use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, MediumSamples, fill};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Method, Streams};
@@ -41,7 +41,7 @@ fn by_map(
         global: Amount::Stored(surface as u64),
         caustic: Amount::Emitted(1),
         volume: Amount::Stored(volume as u64),
-        beams: None,
+        media: MediumSamples::Points,
         indirect: Indirect::Seen,
         seed: 1,
         replicate,

@@ -1,7 +1,9 @@
 //! Maps that are seen directly, from numbers of photons sent out.
 
 use turbid::photons::importance::Importance;
-use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, Maps, fill_counted_by_importance};
+use turbid::photons::maps::{
+    Amount, Emitted, Indirect, MapSettings, Maps, MediumSamples, fill_counted_by_importance,
+};
 use turbid::scene::Scene;
 use turbid::transport::NoProgress;
 
@@ -18,7 +20,14 @@ pub fn filled(
 ) -> anyhow::Result<Maps> {
     // Only a count that is still to be found would be read here.
     let [global, caustic, volume] = [emitted.global, emitted.caustic, emitted.volume].map(Amount::Emitted);
-    let settings =
-        MapSettings { global, caustic, volume, beams: None, indirect: Indirect::Seen, seed, replicate };
+    let settings = MapSettings {
+        global,
+        caustic,
+        volume,
+        media: MediumSamples::Points,
+        indirect: Indirect::Seen,
+        seed,
+        replicate,
+    };
     Ok(fill_counted_by_importance(scene, &settings, emitted, importance, &NoProgress)?)
 }

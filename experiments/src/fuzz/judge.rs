@@ -16,7 +16,7 @@ use turbid::integrators::mapper;
 use turbid::output::one_line;
 use turbid::photons::check_end;
 use turbid::photons::importance::{Importance, ImportanceSettings};
-use turbid::photons::maps::{Amount, Indirect, MapSettings, fill_by_importance};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, MediumSamples, fill_by_importance};
 use turbid::scene::{Camera, Orders, Scene, SceneFile};
 use turbid::sensor::{
     Film, Method, PathSettings, PhotonSettings, Streams, by_light, by_paths, by_photons, check_camera,
@@ -415,7 +415,7 @@ fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_by_importance:
         global: amount,
         caustic: amount,
         volume: amount,
-        beams: None,
+        media: MediumSamples::Points,
         indirect,
         seed: SEED,
         replicate: 0,

@@ -9,7 +9,6 @@ use cpu_time::ProcessTime;
 use turbid::estimators::Gather;
 use turbid::integrators::mapper::{self, Mapper};
 use turbid::math::Positive;
-use turbid::photons::beams::BeamLength;
 use turbid::photons::maps::{self, Amount, MapSettings};
 use turbid::sensor::{Film, Method};
 use turbid::transport::{NoProgress, Progress};
@@ -74,8 +73,6 @@ fn settings(
     };
     let (volume, radius) = stored.of(lines);
     let (global, caustic) = (part(usual.global), part(usual.caustic));
-    let beams = (stored == Stored::Beams).then_some(BeamLength::Sampled);
-    let maps = MapSettings { global, caustic, volume, beams, ..usual };
     let mut read = recipe::readout(picture, 1)?;
     let gathers = [&mut read.global.1, &mut read.caustic.1, &mut read.volume.gather];
     for (gather, radius) in gathers.into_iter().zip(radii) {
@@ -89,6 +86,7 @@ fn settings(
         Stored::Beams => read.volume.along_beams(radius),
     };
     read.volume = read.volume.progressive();
+    let maps = MapSettings { global, caustic, volume, media: read.media(), ..usual };
     Ok((maps, read.in_map(map)))
 }
 
@@ -162,7 +160,7 @@ mod tests {
                 let of = |map| settings(picture, (&lines, stored), [0.1, 0.0, 0.2], 1, map).unwrap();
                 let ((maps, first), (others, later)) = (of(0), of(5));
                 assert_eq!(
-                    (maps.beams.is_some(), maps.replicate + 5),
+                    (maps.media.beams().is_some(), maps.replicate + 5),
                     (stored == Stored::Beams, others.replicate)
                 );
                 let radius =

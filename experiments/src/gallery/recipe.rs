@@ -3,7 +3,7 @@
 use super::pictures::Picture;
 use turbid::estimators::Gather;
 use turbid::integrators::mapper;
-use turbid::photons::maps::{Amount, Indirect, MapSettings};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, MediumSamples};
 
 /// What the maps are filled with, `factor` times the photons of the original.
 pub fn maps(picture: &Picture, factor: u64, seed: u64, replicate: u64) -> MapSettings {
@@ -12,7 +12,7 @@ pub fn maps(picture: &Picture, factor: u64, seed: u64, replicate: u64) -> MapSet
         Amount::Stored(n) => Amount::Stored(n * factor),
     });
     let indirect = if picture.gather > 0 { Indirect::Gathered } else { Indirect::Seen };
-    MapSettings { global, caustic, volume, beams: None, indirect, seed, replicate }
+    MapSettings { global, caustic, volume, media: MediumSamples::Points, indirect, seed, replicate }
 }
 
 /// How the maps are read: as in 1998, with this picture's numbers of photons; of maps with `factor` times the photons, with

@@ -33,9 +33,7 @@ pub struct Studio<'a> {
 
 /// What the global and the caustic map hold, and what is kept of the light in media, as photons or as beams.
 pub(super) fn stored(maps: &Maps) -> [u64; 3] {
-    let [global, caustic, volume] = [&maps.global, &maps.caustic, &maps.volume]
-        .map(|map| map.as_ref().map_or(0, |map| map.stored() as u64));
-    [global, caustic, volume + maps.beams.as_ref().map_or(0, |map| map.stored() as u64)]
+    maps.stored().map(|number| number as u64)
 }
 
 impl<'a> Studio<'a> {

@@ -9,8 +9,10 @@ use super::words::is_fixed;
 use crate::harness::{CellId, Settings, duration};
 use cpu_time::ProcessTime;
 use turbid::memory::{free, in_words};
+use turbid::photons::PeakBytes;
 use turbid::photons::beams::{self, BeamMap};
-use turbid::photons::{PeakBytes, PhotonMap};
+use turbid::photons::maps::Maps;
+use turbid::photons::planes::{self, PlaneMap};
 use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::transport::NoProgress;
 
@@ -72,6 +74,15 @@ pub fn dry_run(settings: &Settings) -> anyhow::Result<String> {
     Ok(text)
 }
 
+/// Most memory that maps take with so many times the photons \[bytes\].
+fn most_bytes(maps: &Maps, more: f64) -> f64 {
+    let of_beams = maps.beams.as_ref().map_or(0, BeamMap::stored) as f64;
+    let of_planes = maps.planes.as_ref().map_or(0, PlaneMap::stored) as f64;
+    let of_points = maps.stored().iter().sum::<usize>() as f64 - of_beams - of_planes;
+    let of_flights = beams::PEAK_BYTES * of_beams + planes::PEAK_BYTES * of_planes;
+    PeakBytes::MAPS.of(more * of_points) + more * of_flights
+}
+
 /// CPU seconds and memory of one cell of maps.
 fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> anyhow::Result<(f64, f64)> {
     let few = photons.min(PHOTONS);
@@ -80,10 +91,8 @@ fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> an
         let start = ProcessTime::now();
         let maps = picture.maps(&point.scene, few, &point.estimators, of)?;
         let filling = start.elapsed().as_secs_f64() * photons as f64 / few as f64;
-        let held = [&maps.global, &maps.caustic, &maps.volume].into_iter().flatten();
         let more = photons as f64 / few as f64;
-        let stored = held.map(PhotonMap::stored).sum::<usize>() as f64 * more;
-        let beams = maps.beams.as_ref().map_or(0, BeamMap::stored) as f64 * more;
+        let bytes: f64 = maps.iter().map(|maps| most_bytes(maps, more)).sum();
         let mut reading = 0.0;
         for estimator in &point.estimators {
             let start = ProcessTime::now();
@@ -91,7 +100,7 @@ fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> an
             let more = if is_fixed(estimator) { photons as f64 / few as f64 } else { 1.0 };
             reading += start.elapsed().as_secs_f64() * more;
         }
-        return Ok((filling + reading, PeakBytes::MAPS.of(stored) + beams::PEAK_BYTES * beams));
+        return Ok((filling + reading, bytes));
     }
     let reach = reach(&point.estimators);
     let replicate = CellId::of("dry-run", 0).stream(words::NAME);

@@ -8,8 +8,7 @@ use super::words;
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use anyhow::Context;
 use std::sync::Arc;
-use turbid::photons::PhotonMap;
-use turbid::photons::beams::BeamMap;
+use turbid::photons::maps::Maps;
 use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::transport::NoProgress;
 
@@ -136,8 +135,7 @@ fn pictures(
     let mut out = CellOutput::new();
     let of = (settings.seed, id.stream(words::NAME));
     let maps = out.time(words::FILLING, |_| picture.maps(&point.scene, photons, &point.estimators, of))?;
-    let held = [&maps.global, &maps.caustic, &maps.volume].into_iter().flatten();
-    let stored = held.map(PhotonMap::stored).sum::<usize>() + maps.beams.as_ref().map_or(0, BeamMap::stored);
+    let stored: usize = maps.iter().flat_map(Maps::stored).sum();
     out.count("photons emitted", photons);
     out.count("photons stored", stored as u64);
     out.push(words::maps(point, photons), "photons stored", stored as f64);

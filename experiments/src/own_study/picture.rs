@@ -8,10 +8,9 @@ use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Estimator, Kernel};
 use turbid::integrators::Layer;
 use turbid::integrators::mapper::{LEAST_K, Mapper, Settings};
-use turbid::photons::beams::BeamLength;
 use turbid::photons::maps::{Amount, Indirect, MapSettings, Maps, fill};
 use turbid::scene::{Camera, Scene};
-use turbid::sensor::{Film, Method, RadianceMaps, Streams};
+use turbid::sensor::{Film, Method, Streams};
 use turbid::transport::NoProgress;
 
 /// How the picture is made.
@@ -126,7 +125,19 @@ impl Picture {
         all
     }
 
-    /// The maps of one replicate, of so many photons emitted each: of points in media, of beams, or of both, by the same histories.
+    /// How maps are read by an estimator in media, and its kernel and gather on surfaces.
+    fn settings(&self, scene: &Scene, estimator: &Estimator) -> turbid::Result<Settings> {
+        let mut settings = Settings::for_scene(scene, LEAST_K)?;
+        settings.volume = *estimator;
+        settings.global = (estimator.kernel, estimator.gather);
+        settings.caustic = (Kernel::Cone, estimator.gather);
+        settings.clips_discs = estimator.treatment != Treatment::None;
+        settings.gather_rays = self.gather_rays.max(1);
+        Ok(settings)
+    }
+
+    /// The maps of one replicate, of so many photons emitted each, by the same histories: one for all estimators that read the same of
+    /// media.
     ///
     /// # Errors
     /// Those of the photon pass
@@ -136,41 +147,36 @@ impl Picture {
         photons: u64,
         estimators: &[Estimator],
         (seed, replicate): (u64, u64),
-    ) -> turbid::Result<Maps> {
+    ) -> turbid::Result<Vec<Maps>> {
         let amount = Amount::Emitted(photons);
         let indirect = if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered };
-        let filled = |beams: Option<BeamLength>| {
-            let (global, caustic, volume) = (amount, amount, amount);
-            let settings = MapSettings { global, caustic, volume, beams, indirect, seed, replicate };
-            fill(scene, &settings, &NoProgress)
-        };
-        let wanted = RadianceMaps::of(estimators);
-        let length = if wanted.whole_beams { BeamLength::Whole } else { BeamLength::Sampled };
-        match wanted {
-            RadianceMaps { points: true, beams: true, .. } => {
-                Ok(Maps { beams: filled(Some(length))?.beams, ..filled(None)? })
+        let mut all: Vec<Maps> = Vec::new();
+        for estimator in estimators {
+            let media = self.settings(scene, estimator)?.media();
+            if all.iter().all(|maps| maps.media != media) {
+                let (global, caustic, volume) = (amount, amount, amount);
+                let settings = MapSettings { global, caustic, volume, media, indirect, seed, replicate };
+                all.push(fill(scene, &settings, &NoProgress)?);
             }
-            RadianceMaps { beams, .. } => filled(beams.then_some(length)),
         }
+        Ok(all)
     }
 
-    /// The picture from maps, by one estimator in media and its kernel and gather on surfaces.
+    /// The picture by one estimator, from those of the maps that hold what it reads of media.
     ///
     /// # Errors
-    /// Those of the photon mapper
+    /// Those of the photon mapper; `Error::Scene` if there are no such maps
     pub fn by_maps(
         &self,
         scene: &Scene,
-        maps: &Maps,
+        maps: &[Maps],
         estimator: &Estimator,
         (seed, replicate): (u64, u64),
     ) -> turbid::Result<(Vec<f64>, f64)> {
-        let mut settings = Settings::for_scene(scene, LEAST_K)?;
-        settings.volume = *estimator;
-        settings.global = (estimator.kernel, estimator.gather);
-        settings.caustic = (Kernel::Cone, estimator.gather);
-        settings.clips_discs = estimator.treatment != Treatment::None;
-        settings.gather_rays = self.gather_rays.max(1);
+        let settings = self.settings(scene, estimator)?;
+        let Some(maps) = maps.iter().find(|maps| maps.media == settings.media()) else {
+            return Err(turbid::Error::Scene(format!("no map holds what {} reads", estimator.name())));
+        };
         let method = Method::Photons(Mapper::new(scene, maps, &settings));
         let mut film = Film::new(self.camera.width(), self.camera.height());
         let streams = Streams { seed, replicate };

@@ -8,13 +8,14 @@ use crate::setups::asked;
 use anyhow::{Context, bail, ensure};
 use std::collections::BTreeSet;
 use std::path::Path;
-use turbid::estimators::{BeamBlur, Estimator, RayEnds};
+use turbid::estimators::{BeamBlur, Estimator};
 use turbid::exchange::{Opened, open};
 use turbid::integrators::mapper::scene_size;
 use turbid::output::one_line;
 use turbid::photons::check_end;
+use turbid::photons::planes::check_planes;
 use turbid::scene::{BUILTIN, Binned, Quantity, QuantityFile, Scene, SceneFile, SceneSource, SensorFile};
-use turbid::sensor::{RadianceMaps, SensorMaps, usual_reach};
+use turbid::sensor::{SensorMaps, usual_reach};
 
 /// One scene of a study.
 #[derive(Clone)]
@@ -109,17 +110,19 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
         check_end(&scene).with_context(|| source.name())?;
         let picture = Picture::new(&scene, picture).context("measure")?;
         let (places, estimators) = (picture.places(), study.estimators(0.1 * scene_size(&scene))?);
-        let is_of_sensors = |e: &&Estimator| {
-            let is_of_places = e.has_beam_fluence || e.beam_blur == BeamBlur::ThreeD;
-            is_of_places || e.has_planes || e.ray_ends == RayEnds::Own
-        };
-        if let Some(estimator) = estimators.iter().find(is_of_sensors) {
+        let is_of_places = |e: &&Estimator| e.has_beam_fluence || e.beam_blur == BeamBlur::ThreeD;
+        if let Some(estimator) = estimators.iter().find(is_of_places) {
             bail!(
-                "picture: {} is of sensors alone; allowed in pictures: beam_radius with beam_blur and beam_length, ray_radius with ray_k, radius, k",
+                "picture: {} is of sensors alone; allowed in pictures: beam_radius with beam_blur, beam_length and planes, ray_radius with ray_k, ray_ends, radius, k",
                 estimator.name()
             );
         }
-        RadianceMaps::check_lengths(&estimators)?;
+        for estimator in &estimators {
+            estimator.check_ends(&scene).with_context(|| estimator.name())?;
+            if estimator.has_planes {
+                check_planes(&scene).with_context(|| estimator.name())?;
+            }
+        }
         ensure!(
             places.len() <= MOST_PLACES,
             "more than {MOST_PLACES} numbers in a scene; allowed: that many"

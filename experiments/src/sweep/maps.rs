@@ -10,7 +10,9 @@ use turbid::integrators::{Layer, Layers};
 use turbid::math::{Positive, Ray};
 use turbid::medium::Medium;
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{Amount, Emitted, Indirect, MapReport, MapSettings, Maps, counts, fill_counted};
+use turbid::photons::maps::{
+    Amount, Emitted, Indirect, MapSettings, Maps, MediumSamples, counts, fill_counted,
+};
 use turbid::rng::Stream;
 use turbid::scene::{Camera, Scene};
 
@@ -77,14 +79,7 @@ pub fn maps(
         (layers, report.rays.total() as f64 + cost(&stream.work) + LOOK_UP * looked as f64)
     };
     let mut made = ByMaps::default();
-    let nothing = Maps {
-        global: None,
-        caustic: None,
-        volume: None,
-        beams: None,
-        indirect: Indirect::Gathered,
-        report: MapReport::default(),
-    };
+    let nothing = Maps::none(Indirect::Gathered);
     let plain = settings(scene, true)?;
     let mapper = Mapper::new(scene, &nothing, &plain);
     let sample = |ray: Ray, stream: &mut Stream| looked(&mapper, ray, stream);
@@ -104,7 +99,7 @@ pub fn maps(
             global: amount,
             caustic: amount,
             volume: amount,
-            beams: None,
+            media: MediumSamples::Points,
             indirect,
             seed,
             replicate: first,

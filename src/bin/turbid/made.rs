@@ -3,7 +3,9 @@
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
 use turbid::integrators::mapper::{Report, Settings};
+use turbid::photons::beams::BeamMap;
 use turbid::photons::maps::{MapReport, Maps};
+use turbid::photons::planes::PlaneMap;
 use turbid::sensor::{BlockMean, Film};
 
 /// What a picture took.
@@ -48,13 +50,13 @@ impl MapsMade {
     /// Counts a part of the photons.
     pub fn add(&mut self, maps: &Maps) {
         self.report.add_part(&maps.report);
-        let beams = self.filled[2].map_or(0, |filled| filled.stored);
-        for (mine, map) in self.filled.iter_mut().zip([&maps.global, &maps.caustic, &maps.volume]) {
+        let emitted = [&maps.global, &maps.caustic, &maps.volume].map(|map| Some(map.as_ref()?.emitted()));
+        let of_beams = maps.beams.as_ref().map(BeamMap::emitted);
+        let of_planes = maps.planes.as_ref().map(PlaneMap::emitted);
+        let emitted = [emitted[0], emitted[1], emitted[2].or(of_beams).or(of_planes)];
+        for ((mine, stored), emitted) in self.filled.iter_mut().zip(maps.stored()).zip(emitted) {
             let before = mine.map_or(0, |filled| filled.stored);
-            *mine = map.as_ref().map(|m| Filled { stored: before + m.stored(), emitted: m.emitted() });
-        }
-        if let Some(map) = &maps.beams {
-            self.filled[2] = Some(Filled { stored: beams + map.stored(), emitted: map.emitted() });
+            *mine = emitted.map(|emitted| Filled { stored: before + stored, emitted });
         }
     }
 }

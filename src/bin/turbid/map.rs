@@ -16,7 +16,7 @@ use turbid::output::{
     Curve, Tone, WriteError, auto_exposure, check_writable, is_same_file, write_photons_npy, write_ply,
     write_png,
 };
-use turbid::photons::maps::{Indirect, Maps, fill_counted_by_importance};
+use turbid::photons::maps::{Indirect, Maps, MediumSamples, fill_counted_by_importance};
 use turbid::photons::{Histories, Photon, PhotonMap, shoot};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{colour, draw_photons};
@@ -215,7 +215,7 @@ impl Map {
 
     /// The photons of the maps asked for, each with the number that its map's pass emitted.
     fn in_maps(&self, scene: &Scene, camera: Option<&Camera>) -> anyhow::Result<Vec<(Photon, u64)>> {
-        let settings = self.amounts.settings(Indirect::Gathered, None, self.seed, 0);
+        let settings = self.amounts.settings(Indirect::Gathered, MediumSamples::Points, self.seed, 0);
         let importance = match camera {
             Some(camera) => self.amounts.importance(scene, camera, &settings)?,
             None => None,

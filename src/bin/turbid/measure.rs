@@ -5,7 +5,9 @@ use super::learn::learn;
 use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::options;
-use super::picture::{BlurName, BoundaryName, LengthName, RejectName, beam_radius, ray_k, ray_radius};
+use super::picture::{
+    BlurName, BoundaryName, EndsName, LengthName, RejectName, beam_radius, ray_ends, ray_k, ray_radius,
+};
 use super::progress::Bar;
 use super::revision::revision;
 use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead, whole};
@@ -182,14 +184,6 @@ enum With {
     Photons,
     /// Light tracing: photons that are scored as they pass, none stored.
     Light,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum EndsName {
-    /// Square across the ray at the faces of the medium, which --boundary makes up for.
-    Cut,
-    /// For each photon or beam where the parallel ray through it leaves the medium.
-    Own,
 }
 
 /// Orders on the command line.
@@ -457,16 +451,8 @@ impl Measure {
         let ray_k = ray_k(self.ray_k);
         let beam_blur = self.beam_blur.map_or(BeamBlur::default(), BlurName::blur);
         let beam_length = self.beam_length.map(LengthName::length).unwrap_or_default();
-        let ray_ends = match self.ray_ends {
-            Some(EndsName::Own) => RayEnds::Own,
-            Some(EndsName::Cut) | None => RayEnds::Cut,
-        };
-        if ray_ends == RayEnds::Own && (ray_radius, beam_radius) == (None, None) {
-            bail!(
-                "--ray-ends is own, of rays that are read at once; allowed: with --ray-radius or --beam-radius"
-            );
-        }
-        let estimator = Estimator { ray_ends, ..estimator };
+        let estimator =
+            Estimator { ray_ends: ray_ends(self.ray_ends, (ray_radius, beam_radius))?, ..estimator };
         let estimator =
             Estimator { beam_blur, beam_length, has_beam_fluence: self.beam_fluence, ..estimator };
         let estimator = Estimator { ray_radius, ray_k, beam_radius, has_planes, is_progressive, ..estimator };

@@ -108,9 +108,13 @@ pub fn tell_gathers(
                 "the {name} map holds {stored} photons, fewer than an estimate takes, {k}: --{name} for more of them"
             ))?;
         } else if gathers.found == 0 {
+            let (within, or) = match radius > 0.0 {
+                true => (format!(" or a beam within {radius:.2e} L"), ", or a larger radius"),
+                false => (" or a plane".to_string(), ""),
+            };
             note(&format!(
-                "none of the {} look-ups in the {name} map found a photon or a beam within {radius:.2e} L, so that it brings no \
-                 light: --{name} for more of them, or a larger radius",
+                "none of the {} look-ups in the {name} map found a photon{within}, so that it brings no light: --{name} for more of \
+                 them{or}",
                 gathers.count
             ))?;
         } else if 2 * gathers.underfull > gathers.count {

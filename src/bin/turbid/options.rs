@@ -118,6 +118,8 @@ pub const RENDER: Table = &[
     ("beam_radius", PHOTONS),
     ("beam_blur", PHOTONS),
     ("beam_length", PHOTONS),
+    ("ray_ends", PHOTONS),
+    ("planes", PHOTONS),
     ("gather_rays", PHOTONS),
     ("near", PHOTONS),
     ("step", PHOTONS),

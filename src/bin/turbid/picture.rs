@@ -8,14 +8,14 @@ use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use std::num::NonZeroUsize;
 use turbid::estimators::boundary::{Rejection, Treatment};
-use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel, RayEnds};
 use turbid::integrators::mapper::{LEAST_K, Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
 use turbid::output::Curve;
 use turbid::photons::beams::BeamLength;
 use turbid::photons::importance::{Importance, ImportanceSettings};
-use turbid::photons::maps::{Amount, Emitted, Forecast, Indirect, MapSettings, forecast};
+use turbid::photons::maps::{Amount, Emitted, Forecast, Indirect, MapSettings, MediumSamples, forecast};
 use turbid::scene::{Camera, Scene};
 use turbid::transport::BLOCK;
 
@@ -215,12 +215,12 @@ impl Photons {
     pub fn settings(
         &self,
         indirect: Indirect,
-        beams: Option<BeamLength>,
+        media: MediumSamples,
         seed: u64,
         replicate: u64,
     ) -> MapSettings {
         let Photons { global, caustic, volume, .. } = *self;
-        MapSettings { global, caustic, volume, beams, indirect, seed, replicate }
+        MapSettings { global, caustic, volume, media, indirect, seed, replicate }
     }
 }
 
@@ -287,6 +287,16 @@ pub struct Readout {
     /// How far beams go [default: sampled].
     #[arg(long, value_enum, requires = "beam_radius", conflicts_with_all = ["reject", "ray_radius"])]
     beam_length: Option<LengthName>,
+    /// Where rays that are read at once end: own loses nothing at faces, and blurs the picture alone. Only for one homogeneous region
+    /// with nothing in it [default: cut].
+    #[arg(long, value_enum, conflicts_with = "planes")]
+    ray_ends: Option<EndsName>,
+    /// Read light that is scattered twice and more in media from planes of photons' flights, without blur or bias: each flight and a
+    /// scattering on it sweep one out. Beside bodies --beam-radius is needed too, for light that comes to the media from them. Homogeneous
+    /// media whose extinction is the same in all channels, no glass. Its variance is infinite: pixels have bright outliers, ever rarer
+    /// ones with more maps. --volume counts planes and beams.
+    #[arg(long, conflicts_with_all = ["ray_radius", "volume_k", "reject"])]
+    planes: bool,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
     #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
     gather_rays: u32,
@@ -396,6 +406,14 @@ impl BlurName {
     }
 }
 
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+pub enum EndsName {
+    /// Square across the ray at the faces of the medium, which --boundary makes up for.
+    Cut,
+    /// For each photon or beam where the parallel ray through it leaves the medium.
+    Own,
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 pub enum LengthName {
     /// As far as the photon flew.
@@ -465,6 +483,20 @@ pub fn beam_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
     Ok(given.map(|radius| Positive::length("--beam-radius", radius)).transpose()?)
 }
 
+/// Where rays end by --ray-ends, of these radii about rays and beams.
+pub fn ray_ends(
+    given: Option<EndsName>,
+    radii: (Option<Positive>, Option<Positive>),
+) -> anyhow::Result<RayEnds> {
+    match given {
+        Some(EndsName::Own) if radii == (None, None) => Err(anyhow!(
+            "--ray-ends is own, of rays that are read at once; allowed: with --ray-radius or --beam-radius"
+        )),
+        Some(EndsName::Own) => Ok(RayEnds::Own),
+        Some(EndsName::Cut) | None => Ok(RayEnds::Cut),
+    }
+}
+
 /// Change of direct light above which a step of the march is halved.
 const TOLERANCE: f64 = 0.5;
 
@@ -484,9 +516,10 @@ impl Readout {
         self.ray_k.is_some()
     }
 
-    /// How far the beams of the volume map go, if it is of beams.
-    pub fn beams(&self) -> Option<BeamLength> {
-        self.beam_radius.map(|_| self.beam_length.map(LengthName::length).unwrap_or_default())
+    /// What the volume map holds.
+    pub fn media(&self) -> MediumSamples {
+        let beams = self.beam_radius.map(|_| self.beam_length.map(LengthName::length).unwrap_or_default());
+        MediumSamples::new(beams, self.planes)
     }
 
     /// Whether steps that depend on what is read are asked for.
@@ -536,7 +569,11 @@ impl Readout {
         settings.volume.ray_k = ray_k(self.ray_k);
         settings.volume.beam_radius = beam_radius(self.beam_radius)?;
         settings.volume.beam_blur = self.beam_blur.map_or(BeamBlur::default(), BlurName::blur);
-        settings.volume.beam_length = self.beams().unwrap_or_default();
+        settings.volume.beam_length = self.media().beams().unwrap_or_default();
+        settings.volume.has_planes = self.planes;
+        let radii = (settings.volume.ray_radius, settings.volume.beam_radius);
+        settings.volume.ray_ends = ray_ends(self.ray_ends, radii)?;
+        settings.volume.check_ends(scene).context("--ray-ends")?;
         if settings.volume.beam_blur == BeamBlur::ThreeD {
             return Err(anyhow!("--beam-blur is 3d, which is about places; allowed of pictures: 1d, 2d"));
         }
@@ -574,7 +611,7 @@ impl Readout {
             }
             if spacing > 0.0 && settings.volume.reads_rays() {
                 return Err(anyhow!(
-                    "--spacing is about steps; allowed: without --ray-radius and --beam-radius"
+                    "--spacing is about steps; allowed: without --ray-radius, --beam-radius and --planes"
                 ));
             }
             settings.spacing = spacing;

@@ -16,8 +16,6 @@ use std::time::{Duration, Instant};
 use turbid::estimators::Gather;
 use turbid::integrators::mapper::{Gathers, Mapper, Report, Settings};
 use turbid::photons::Part;
-use turbid::photons::PhotonMap;
-use turbid::photons::beams::BeamMap;
 use turbid::photons::importance::Importance;
 use turbid::photons::maps::{Emitted, MapSettings, Maps, fill_part};
 use turbid::scene::{Camera, Scene};
@@ -249,7 +247,7 @@ impl Sequence<'_> {
 
     /// What is found out once: what leads photons, how many are sent out, and the first radii.
     fn shared(&self, stages: &mut Stages) -> anyhow::Result<Shared> {
-        let maps = self.photons.settings(self.readout.indirect(), self.readout.beams(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), self.readout.media(), self.seed, 0);
         let importance = stages.time("pilot", || self.photons.importance(self.scene, self.camera, &maps))?;
         let emitted = stages.time("pilot", || {
             let fixed = (self.fixed, 0.0);
@@ -288,11 +286,7 @@ impl Sequence<'_> {
         let (width, height) = (side(self.camera.width()), side(self.camera.height()));
         let camera = self.camera.sized(Some(width), Some(height))?;
         let maps = self.filled(shared, PILOT, stages)?;
-        let stored =
-            [&maps.global, &maps.caustic, &maps.volume].map(|map| map.as_ref().map_or(0, PhotonMap::stored));
-        let [global, caustic, volume] = stored;
-        let beams = maps.beams.as_ref().map_or(0, BeamMap::stored);
-        let mut settings = self.readout.suited(&self.usual, [global, caustic, volume + beams])?;
+        let mut settings = self.readout.suited(&self.usual, maps.stored())?;
         // Balls say what a radius may be; tubes have theirs by what is asked for.
         settings.volume.ray_radius = None;
         let method = Method::Photons(Mapper::new(self.scene, &maps, &settings));

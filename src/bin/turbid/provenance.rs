@@ -1,14 +1,14 @@
 //! Settings of photon maps as JSON, for the headers of pictures.
 
 use serde_json::{Value, json};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Gather, Kernel, RayEnds};
 use turbid::integrators::mapper::Settings;
 use turbid::integrators::{March, StepRule};
 use turbid::photons::maps::{Amount, Indirect, MapSettings};
 
 /// What maps are filled with.
 pub fn map_settings(settings: &MapSettings) -> Value {
-    let MapSettings { global, caustic, volume, beams: _, indirect, seed, replicate: _ } = settings;
+    let MapSettings { global, caustic, volume, media: _, indirect, seed, replicate: _ } = settings;
     let amount = |amount: &Amount| match amount {
         Amount::Stored(count) => json!({ "stored": count }),
         Amount::Emitted(count) => json!({ "emitted": count }),
@@ -43,6 +43,12 @@ pub fn mapper_settings(settings: &Settings) -> Value {
         of_volume["beam_radius"] = json!(radius.get());
         of_volume["beam_blur"] = json!(volume.beam_blur.name());
         of_volume["beam_length"] = json!(volume.beam_length.name());
+    }
+    if volume.ray_ends != RayEnds::Cut {
+        of_volume["ray_ends"] = json!(volume.ray_ends.name());
+    }
+    if volume.has_planes {
+        of_volume["planes"] = json!(true);
     }
     json!({
         "global": read(*global),

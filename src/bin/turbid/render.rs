@@ -21,9 +21,8 @@ use std::ops::AddAssign;
 use std::path::{Path, PathBuf};
 use turbid::integrators::mapper::{Mapper, Report, Settings};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
-use turbid::photons::beams::BeamMap;
 use turbid::photons::maps::fill_part;
-use turbid::photons::{MOST_HISTORIES, Part, PhotonMap};
+use turbid::photons::{MOST_HISTORIES, Part};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Blocks, Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, PictureError, Streams};
 use turbid::transport::Progress;
@@ -260,9 +259,9 @@ impl Render {
                 Ok((self.fill(film, stages, left, &Method::Light(&scene), (&camera, streams))?, None))
             }),
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
-                let (indirect, beams) = (self.readout.indirect(), self.readout.beams());
+                let (indirect, media) = (self.readout.indirect(), self.readout.media());
                 let settings_of_maps =
-                    self.photons.settings(indirect, beams, streams.seed, streams.replicate);
+                    self.photons.settings(indirect, media, streams.seed, streams.replicate);
                 let importance =
                     stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
                 let importance = importance.as_ref();
@@ -281,12 +280,9 @@ impl Render {
                         .time(MAPS, || fill_part(&scene, &settings_of_maps, emitted, importance, part, &bar));
                     bar.finish();
                     let maps = maps?;
-                    let stored = [&maps.global, &maps.caustic, &maps.volume];
-                    let mut stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
-                    stored[2] += maps.beams.as_ref().map_or(0, BeamMap::stored);
                     let settings = match read {
                         Some(settings) => settings,
-                        None => *read.insert(self.readout.suited(&usual, stored)?),
+                        None => *read.insert(self.readout.suited(&usual, maps.stored())?),
                     };
                     made.settings = Some(settings);
                     let method = Method::Photons(Mapper::new(&scene, &maps, &settings));
@@ -428,7 +424,7 @@ impl Render {
         camera: &Camera,
         sequence: &Sequence<'_>,
     ) -> serde_json::Value {
-        let maps = self.photons.settings(self.readout.indirect(), self.readout.beams(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), self.readout.media(), self.seed, 0);
         serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
             "plan": if self.plan == PlanName::Full { "full" } else { "auto" },
@@ -566,7 +562,7 @@ impl Render {
     /// All that the picture was made from: no path, no time.
     fn provenance(&self, scene_text: &str, made: &Made, exposure: f64) -> anyhow::Result<serde_json::Value> {
         let by_photons = self.with == With::Photons;
-        let maps = self.photons.settings(self.readout.indirect(), self.readout.beams(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), self.readout.media(), self.seed, 0);
         // Of a progressive picture a run may know some of the maps alone.
         let filled = (!self.progressive.is_asked_for)
             .then(|| made.maps.iter().map(|made| made.filled).collect::<Vec<[Option<Filled>; 3]>>());

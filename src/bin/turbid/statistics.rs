@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::time::Duration;
 use turbid::integrators::mapper::Gathers;
 use turbid::photons::Ends;
-use turbid::photons::maps::MapReport;
+use turbid::photons::maps::{MapReport, MediumSamples};
 
 /// The stage that fills the maps: emission and building the trees.
 pub const MAPS: &str = "maps";
@@ -28,15 +28,23 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         let nearest = settings.map_or([None; 3], |settings| settings.nearest());
         let of_volume = settings.map(|settings| settings.volume);
         let is_along_rays = of_volume.is_some_and(|volume| volume.reads_rays());
-        let has_beams = of_volume.is_some_and(|volume| volume.beam_radius.is_some());
+        let samples = settings.map_or(MediumSamples::Points, |settings| settings.media());
         for ((name, filled), k) in names.into_iter().zip(filled).zip(nearest) {
             if let Some(Filled { stored, emitted }) = filled {
                 let is_volume = name == "volume";
                 let k = k.filter(|_| !(is_volume && is_along_rays));
                 let taken = k.map_or(String::new(), |k| format!(", the {k} nearest an estimate"));
-                let line = match is_volume && has_beams {
-                    true => format!("{stored} beams stored of {emitted} photons emitted"),
-                    false => format!("{stored} photons stored of {emitted} emitted{taken}"),
+                let line = match samples {
+                    MediumSamples::Planes(None) if is_volume => {
+                        format!("{stored} planes stored of {emitted} photons emitted")
+                    }
+                    MediumSamples::Planes(_) if is_volume => {
+                        format!("{stored} planes and beams stored of {emitted} photons emitted")
+                    }
+                    MediumSamples::Beams(_) if is_volume => {
+                        format!("{stored} beams stored of {emitted} photons emitted")
+                    }
+                    _ => format!("{stored} photons stored of {emitted} emitted{taken}"),
                 };
                 writeln!(text, "map {number:<3} {name:<8} {line}")?;
             }
@@ -125,13 +133,10 @@ fn gathered(gathers: &Gathers) -> String {
     if gathers.count == 0 {
         return "0".to_string();
     }
-    let mut text = format!(
-        "{}, {:.1} photons within {:.2e} L in the mean; {} found fewer than k",
-        gathers.count,
-        gathers.found as f64 / gathers.count as f64,
-        gathers.mean_radius(),
-        gathers.underfull
-    );
+    let (each, radius) = (gathers.found as f64 / gathers.count as f64, gathers.mean_radius());
+    let within = if radius > 0.0 { format!(" photons within {radius:.2e} L") } else { " planes".to_string() };
+    let mut text =
+        format!("{}, {each:.1}{within} in the mean; {} found fewer than k", gathers.count, gathers.underfull);
     if gathers.unknown > 0 {
         text.push_str(&format!(
             "; {} on bodies too thin for their area to be found, taken for dark",

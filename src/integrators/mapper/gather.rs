@@ -2,7 +2,7 @@
 //!
 //! A ray in a direction of density cos/pi brings pi times the radiance along it as irradiance. The ray flies as far as
 //! a photon would. If it collides, it brings what the medium scatters there: single scattering by shadow rays and the
-//! volume map. If it passes, it brings what the diffuse surface behind reflects, from the global map, which holds every
+//! volume map; planes are read along all of the way in place of it. If it passes, it brings what the diffuse surface behind reflects, from the global map, which holds every
 //! class of light there, direct light too. What it meets of lights themselves, straight or by specular surfaces, is direct
 //! light and caustics of the surface where it starts, and is left out.
 
@@ -106,7 +106,14 @@ impl Visitor for GatherRay<'_, '_, '_> {
 
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {
-            Step::Ahead(_) if walker.order == 0 => self.report.rays.segments += 1,
+            Step::Ahead(hit) if walker.order == 0 => {
+                self.report.rays.segments += 1;
+                if self.mapper.settings.volume.has_planes {
+                    let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
+                    let multiple = self.mapper.all_along(walker, end, self.report, stream);
+                    self.found += self.weight * walker.weight * multiple;
+                }
+            }
             Step::Collision(Arrival { walker, position }, number) => {
                 let single = self.mapper.single(walker, position, number, self.report, stream);
                 let (multiple, _) = self.mapper.multiple(walker, position, number, self.report);

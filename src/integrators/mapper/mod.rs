@@ -82,6 +82,12 @@ impl Gathers {
         self.found += estimate.found as u64;
     }
 
+    /// Counts planes across a stretch of a ray, which are not another look-up where they stand beside beams.
+    fn add_planes(&mut self, estimate: &RayEstimate, is_beside: bool) {
+        self.count += u64::from(!is_beside);
+        self.found += estimate.found as u64;
+    }
+
     /// Mean radius where photons are, which few look-ups in their midst weigh more than many far off \[L\]; none where none was found.
     pub fn radius_by_density(&self) -> Option<f64> {
         let [density, radii] = self.density;
@@ -176,26 +182,23 @@ impl<'a> Mapper<'a> {
     /// than a pixel sees of a scene 10^6 times as large.
     ///
     /// # Errors
-    /// `Error::Scene` that says which map, and which radius is allowed; where the volume map holds photons and beams are asked for, or the
-    /// other way round
+    /// `Error::Scene` that says which map, and which radius is allowed; where the volume map holds photons and beams or planes are asked
+    /// for, or the other way round; those of [`Estimator::check_ends`]
     pub fn check_radii(&self) -> Result<()> {
-        let Maps { global, caustic, volume, beams, .. } = self.maps;
-        if self.settings.volume.has_planes {
-            return Err(Error::Scene("pictures are not read from planes; allowed: beams, or points".into()));
-        }
+        let Maps { global, caustic, volume, beams, planes, .. } = self.maps;
         let is_of_beams = self.settings.volume.beam_radius.is_some();
         if is_of_beams && self.settings.volume.beam_blur == BeamBlur::ThreeD {
             return Err(Error::Scene(
                 "rays know no blur of beams in three dimensions; allowed: one, two".into(),
             ));
         }
-        if (is_of_beams && beams.is_none() && volume.is_some())
-            || (!is_of_beams && volume.is_none() && beams.is_some())
-        {
+        let holds_some = volume.is_some() || beams.is_some() || planes.is_some();
+        if holds_some && self.maps.media != self.settings.media() {
             return Err(Error::Scene(
-                "the volume map holds photons and is asked for beams, or the other way round".into(),
+                "the volume map does not hold what is to be read of it: photons, beams, or planes; allowed: what it was filled with".into(),
             ));
         }
+        self.settings.volume.check_ends(self.scene)?;
         let Settings { global: of_global, caustic: of_caustic, volume: of_volume, .. } = self.settings;
         let radii = [of_global.1.cap(), of_caustic.1.cap(), of_volume.least_named_radius()];
         let maps = [("global", global), ("caustic", caustic), ("volume", volume)];

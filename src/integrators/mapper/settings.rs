@@ -5,7 +5,7 @@ use crate::estimators::boundary::Treatment;
 use crate::estimators::{Codimension, Estimator, Gather, Kernel};
 use crate::integrators::{Adaptive, March, StepRule};
 use crate::math::Positive;
-use crate::photons::maps::Indirect;
+use crate::photons::maps::{Indirect, MediumSamples};
 use crate::scene::Scene;
 
 /// Photons of an estimate where nothing is asked for: the fewest, and the most.
@@ -150,6 +150,12 @@ impl Settings {
             settings.volume = self.volume.in_map(map);
         }
         settings
+    }
+
+    /// What the volume map is to hold.
+    pub fn media(&self) -> MediumSamples {
+        let Estimator { beam_radius, beam_length, has_planes, .. } = self.volume;
+        MediumSamples::new(beam_radius.map(|_| beam_length), has_planes)
     }
 
     /// Photons of an estimate from the global, the caustic and the volume map; none for a fixed radius.

@@ -2,11 +2,11 @@
 
 use super::{Eye, Mapper, Report};
 use crate::Spectrum;
-use crate::estimators::BeamBlur;
 use crate::estimators::boundary::Boundary;
+use crate::estimators::{BeamBlur, RayEnds, RayEstimate, Stretched};
 use crate::faults::{Fault, planted};
 use crate::integrators::march::{self, LEFT, Source};
-use crate::math::{Interval, Ray, cosine_pair};
+use crate::math::{Interval, Positive, Ray, cosine_pair};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::Target;
@@ -35,7 +35,8 @@ impl Mapper<'_> {
         medium.albedo(position) * self.direct(&here, None, report, stream, value, blind)
     }
 
-    /// The same of all other light, from the photons or beams about the point, and their radius \[L\].
+    /// The same of all other light, from the photons or beams about the point, and their radius \[L\]; nothing of planes, which are read
+    /// along whole rays alone.
     pub(super) fn multiple(
         &self,
         walker: &Walker,
@@ -45,7 +46,9 @@ impl Mapper<'_> {
     ) -> (Spectrum, f64) {
         let (medium, wo, volume) = (self.scene.medium(number), -walker.ray.dir, &self.settings.volume);
         let boundary = self.boundary(number);
-        let (scattered, radius) = if let (Some(across), Some(map)) = (volume.of_beams(), &self.maps.beams) {
+        let (scattered, radius) = if volume.has_planes {
+            (Spectrum::ZERO, 0.0)
+        } else if let (Some(across), Some(map)) = (volume.of_beams(), &self.maps.beams) {
             let estimate = across.in_scattered(map, (position, wo), (number, medium), &boundary);
             report.volume.add(&estimate, 2);
             (estimate.value, estimate.radius)
@@ -58,6 +61,78 @@ impl Mapper<'_> {
             (Spectrum::ZERO, 0.0)
         };
         (medium.albedo(position) * scattered, radius)
+    }
+
+    /// What a stretch of a ray through a medium brings to its near end of all light that is not direct there, where rays are read as a
+    /// whole [W/(L^2 sr)].
+    fn along(
+        &self,
+        (ray, span): (&Ray, Interval),
+        number: usize,
+        report: &mut Report,
+        stream: &mut Stream,
+    ) -> Spectrum {
+        let (scene, maps, volume) = (self.scene, self.maps, &self.settings.volume);
+        let medium = scene.medium(number);
+        let passage = Passage::new(medium, ray, span, stream);
+        let boundary = self.extents[number].boundary();
+        let (way, passed) = ((ray, span), |t: f64| passage.to(t));
+        let mut sum = Spectrum::ZERO;
+        if let (Some(along), Some(map)) = (volume.of_rays(), &maps.volume) {
+            let estimate = match &self.radii {
+                Some(radii) => along.radiance_by_radii((map, radii), way, medium, &boundary, &passed),
+                None => along.radiance(map, way, medium, &boundary, &passage),
+            };
+            report.volume.add_along(along.radius, &estimate);
+            sum += estimate.value;
+        }
+        if let (Some(across), Some(map)) = (volume.of_beams(), &maps.beams) {
+            let of = (number, medium);
+            let estimate = match volume.beam_blur {
+                BeamBlur::OneD => across.radiance(map, way, of, &boundary, &passed),
+                // A blur about places is refused where the mapper is checked.
+                BeamBlur::TwoD | BeamBlur::ThreeD => across.radiance_in_2d(map, way, of, &boundary, &passed),
+            };
+            report.volume.add_along(across.radius, &estimate);
+            sum += estimate.value;
+        }
+        if let (Some(planes), Some(map)) = (volume.of_planes(), &maps.planes) {
+            let estimate = planes.radiance(map, way, (scene, number), &passed);
+            report.volume.add_planes(&estimate, volume.beam_radius.is_some());
+            sum += estimate.value;
+        }
+        sum
+    }
+
+    /// The same of a whole ray, where each photon or beam ends for itself, and its radius \[L\]; none where stretches are cut.
+    fn of_own_ends(&self, ray: &Ray) -> Option<(RayEstimate, Positive)> {
+        let (volume, maps) = (&self.settings.volume, self.maps);
+        if volume.ray_ends == RayEnds::Cut {
+            return None;
+        }
+        let of_points = maps.volume.as_ref().map(|map| Stretched::Points(map, self.radii.as_deref()));
+        let stored = of_points.or(maps.beams.as_ref().map(Stretched::Beams))?;
+        let radius = volume.ray_radius.or(volume.beam_radius)?;
+        Some((volume.radiance_of_own_ends(self.scene, stored, ray), radius))
+    }
+
+    /// What such stretches bring all along the way to the next body.
+    pub(super) fn all_along(
+        &self,
+        walker: &Walker,
+        end: f64,
+        report: &mut Report,
+        stream: &mut Stream,
+    ) -> Spectrum {
+        let segments = self.scene.segments(&walker.ray, end, walker.interior);
+        segments.iter().fold(Spectrum::ZERO, |sum, segment| {
+            let (span, number) = (segment.interval, segment.medium);
+            let seen = transmittance(self.scene, &walker.ray, span.start, walker.interior, stream);
+            if !self.scene.medium(number).is_colliding() || seen.max() < LEFT {
+                return sum;
+            }
+            sum + seen * self.along((&walker.ray, span), number, report, stream)
+        })
     }
 
     /// What estimates are told of what is about a medium.
@@ -104,6 +179,10 @@ impl Eye<'_, '_> {
     /// Adds what media bring to the ray up to distance `end`.
     pub(super) fn march(&mut self, walker: &Walker, end: f64, stream: &mut Stream) {
         let scene = self.mapper.scene;
+        if let Some((estimate, radius)) = self.mapper.of_own_ends(&walker.ray) {
+            self.report.volume.add_along(radius, &estimate);
+            self.layers.multiple += walker.weight * estimate.value;
+        }
         for segment in scene.segments(&walker.ray, end, walker.interior).iter() {
             let seen = walker.weight
                 * transmittance(scene, &walker.ray, segment.interval.start, walker.interior, stream);
@@ -130,31 +209,10 @@ impl Eye<'_, '_> {
         if !medium.is_colliding() && (!is_full || span.end == f64::INFINITY) {
             return;
         }
-        if let (Some(along), Some(map)) = (mapper.settings.volume.of_rays(), &mapper.maps.volume) {
-            let passage = Passage::new(medium, &walker.ray, span, stream);
-            let boundary = mapper.extents[number].boundary();
-            let way = (&walker.ray, span);
-            let estimate = match &mapper.radii {
-                Some(radii) => {
-                    along.radiance_by_radii((map, radii), way, medium, &boundary, &|t| passage.to(t))
-                }
-                None => along.radiance(map, way, medium, &boundary, &passage),
-            };
-            self.report.volume.add_along(along.radius, &estimate);
-            self.layers.multiple += seen * estimate.value;
-        }
-        if let (Some(across), Some(map)) = (mapper.settings.volume.of_beams(), &mapper.maps.beams) {
-            let passage = Passage::new(medium, &walker.ray, span, stream);
-            let boundary = mapper.extents[number].boundary();
-            let (way, of) = ((&walker.ray, span), (number, medium));
-            let passed = |t: f64| passage.to(t);
-            let estimate = match mapper.settings.volume.beam_blur {
-                BeamBlur::OneD => across.radiance(map, way, of, &boundary, &passed),
-                // A blur about places is refused where the mapper is checked.
-                BeamBlur::TwoD | BeamBlur::ThreeD => across.radiance_in_2d(map, way, of, &boundary, &passed),
-            };
-            self.report.volume.add_along(across.radius, &estimate);
-            self.layers.multiple += seen * estimate.value;
+        let volume = &mapper.settings.volume;
+        if volume.reads_rays() && volume.ray_ends == RayEnds::Cut {
+            self.layers.multiple +=
+                seen * mapper.along((&walker.ray, span), number, &mut self.report, stream);
         }
         let march = &mapper.settings.march;
         let mut source = Fog { eye: self, walker, number, shared: None, radius: 0.0, found: Spectrum::ZERO };

@@ -1,11 +1,12 @@
 //! Which photons a map holds, and the pass that fills it.
 
-use super::settings::{Indirect, MapSettings};
+use super::settings::{Indirect, MapSettings, MediumSamples};
 use crate::faults::{Fault, planted};
 use crate::photons::beams::BeamLength;
 use crate::photons::importance::Importance;
 use crate::photons::{Emitter, Flags, Histories, Photon, Run, Storage};
 use crate::scene::Scene;
+use crate::transport::Walker;
 
 /// Whether the global map holds a photon of this class.
 pub fn is_global(flags: Flags, indirect: Indirect) -> bool {
@@ -59,13 +60,13 @@ pub(super) struct Classes {
     pub(super) global: u64,
     /// Histories that store volume photons.
     pub(super) volume: u64,
-    /// How far their flights go, which they store instead, if they do.
-    pub(super) beams: Option<BeamLength>,
+    /// What is stored of these.
+    pub(super) media: MediumSamples,
 }
 
 impl Storage for Classes {
     fn in_medium(&self, history: u64, photon: &Photon) -> bool {
-        self.beams.is_none() && self.is_volume(history, photon.flags)
+        self.media == MediumSamples::Points && self.is_volume(history, photon.flags)
     }
 
     fn on_surface(&self, history: u64, photon: &Photon) -> bool {
@@ -77,15 +78,25 @@ impl Storage for Classes {
     }
 
     fn has_beams(&self) -> bool {
-        self.beams.is_some() && self.class != Class::Caustic && self.volume > 0
+        self.media.beams().is_some() && self.class != Class::Caustic && self.volume > 0
     }
 
     fn has_whole_beams(&self) -> bool {
-        self.beams == Some(BeamLength::Whole)
+        self.media.beams() == Some(BeamLength::Whole)
     }
 
-    fn on_flight(&self, history: u64, _order: u32, flags: Flags) -> bool {
-        self.beams.is_some() && self.is_volume(history, flags)
+    fn on_flight(&self, history: u64, walker: &Walker) -> bool {
+        // A flight that begins at a collision is the second leg of a plane, up to the first body.
+        let is_counted = !self.media.has_planes() || walker.origin_surface.is_some();
+        is_counted && self.is_volume(history, walker.flags)
+    }
+
+    fn has_planes(&self) -> bool {
+        self.media.has_planes() && self.class != Class::Caustic && self.volume > 0
+    }
+
+    fn on_plane(&self, history: u64, _walker: &Walker) -> bool {
+        history < self.volume
     }
 }
 

@@ -1,11 +1,11 @@
 //! How many histories each map needs, and from where their photons leave.
 
 use super::classes::{Class, Classes, Emitters};
-use super::settings::{Amount, Emitted, MapSettings, PILOT};
+use super::settings::{Amount, Emitted, MapSettings, MediumSamples, PILOT};
 use crate::error::{Error, Result};
 use crate::photons::importance::Importance;
 use crate::photons::pass::is_diffuse;
-use crate::photons::{BUILD_SECONDS, Pass, PeakBytes, Run, beams, check_end};
+use crate::photons::{BUILD_SECONDS, Pass, PeakBytes, Run, beams, check_end, planes};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{BLOCK, NoProgress};
@@ -20,10 +20,10 @@ pub const MOST_A_STORED: u64 = PILOT / 25;
 pub struct Forecast {
     /// Histories for each map.
     pub emitted: Emitted,
-    /// Photons that the global, the volume and the caustic map will hold, about.
+    /// Photons that the global, the volume and the caustic map will hold, about, beams and planes among them.
     pub stored: [f64; 3],
-    /// Whether those of the volume map are beams.
-    pub has_beams: bool,
+    /// Most memory that each beam or plane of the volume map takes on its way there \[bytes\]; none for photons.
+    pub bytes_each: Option<f64>,
     /// Time of emission, at the pilot's rate, and of building the trees, about \[s\].
     pub seconds: f64,
 }
@@ -33,15 +33,16 @@ impl Forecast {
     pub fn bytes(&self, runs: u64) -> f64 {
         let peak = PeakBytes::of_maps(runs);
         let [global, volume, caustic] = self.stored;
-        let of_media = if self.has_beams { beams::PEAK_BYTES * volume } else { peak.of(volume) };
+        let of_media = self.bytes_each.map_or_else(|| peak.of(volume), |bytes| bytes * volume);
         peak.of(global) + peak.of(caustic) + of_media
     }
 
     /// The part of the photons that takes a part of that memory: no map takes more than its own.
     pub fn part_in(&self, part: f64, runs: u64) -> f64 {
         let peak = PeakBytes::of_maps(runs);
-        let of_points = if self.has_beams { [self.stored[0], 0.0, self.stored[2]] } else { self.stored };
-        of_points.into_iter().map(|photons| peak.part_in(part, photons)).fold(part, f64::min)
+        let [global, volume, caustic] = self.stored;
+        let volume = if self.bytes_each.is_some() { 0.0 } else { volume };
+        [global, volume, caustic].into_iter().map(|photons| peak.part_in(part, photons)).fold(part, f64::min)
     }
 }
 
@@ -85,6 +86,7 @@ fn piloted(
     has_all: bool,
 ) -> Result<Forecast> {
     scene.check_emission()?;
+    settings.media.check(scene)?;
     check_end(scene)?;
     let emitters = Emitters::of(scene, importance);
     let needs = Needs::of(scene, &emitters);
@@ -115,7 +117,7 @@ fn piloted(
     };
     let pilot = |class: Class, histories: u64| {
         let run = class.run(scene, &emitters, importance, settings, histories);
-        let store = Classes { class, global: histories, volume: histories, beams: settings.beams };
+        let store = Classes { class, global: histories, volume: histories, media: settings.media };
         Run { purpose: Purpose::Pilot, is_pilot: true, ..run }.pass(&store, &NoProgress)
     };
     // Where there are more threads than blocks of the pilot, some of them wait.
@@ -125,12 +127,18 @@ fn piloted(
         pass.report.time.as_secs_f64() * busy / length as f64
     };
     // Photons stored by the pilots, and seconds that a history takes.
-    let (mut rates, mut seconds) = ([0.0; 3], [0.0; 2]);
+    let (mut rates, mut seconds, mut bytes_each) = ([0.0; 3], [0.0; 2], None);
     let lengths = [length(&[0, 1]), length(&[2])];
     if lengths[0] > 0 {
         let pass = pilot(Class::Main(settings.indirect), lengths[0])?;
-        let met = if settings.beams.is_some() { pass.met_beams } else { pass.met[1] };
-        (rates[0], rates[1]) = (pass.met[0] as f64, met as f64);
+        let (of_beams, of_planes) = (pass.met_beams as f64, pass.met_planes as f64);
+        rates[0] = pass.met[0] as f64;
+        rates[1] = pass.met[1] as f64;
+        if settings.media != MediumSamples::Points {
+            rates[1] = of_beams + of_planes;
+            let bytes = beams::PEAK_BYTES * of_beams + planes::PEAK_BYTES * of_planes;
+            bytes_each = Some(if rates[1] > 0.0 { bytes / rates[1] } else { planes::PEAK_BYTES });
+        }
         seconds[0] = a_history(&pass, lengths[0]);
     }
     if lengths[1] > 0 {
@@ -160,7 +168,7 @@ fn piloted(
     let threads = rayon::current_num_threads() as f64;
     let built = BUILD_SECONDS * stored.iter().sum::<f64>() / threads;
     let seconds = seconds[0] * main + seconds[1] * emitted.caustic as f64 + built;
-    Ok(Forecast { emitted, stored, has_beams: settings.beams.is_some(), seconds })
+    Ok(Forecast { emitted, stored, bytes_each, seconds })
 }
 
 /// Which maps a scene needs.

@@ -6,7 +6,7 @@
 //! | map | holds | read |
 //! |---|---|---|
 //! | caustic | L S+ D | where the eye looks at a diffuse surface |
-//! | volume | L (S, D, M)+ M: every collision that is not direct, or the flight to it | along rays through media |
+//! | volume | L (S, D, M)+ M: every collision that is not direct, or the flight to it, or planes of flights | along rays through media |
 //! | global, seen | L ... D with a D or M on the way | where the eye looks at a diffuse surface |
 //! | global, gathered | every L ... D | where a ray that left that surface meets the next one |
 //!
@@ -22,10 +22,11 @@ mod settings;
 
 pub use classes::{is_caustic, is_global, is_volume};
 pub use counts::{Forecast, MOST_A_STORED, counts, counts_by_importance, forecast};
-pub use settings::{Amount, Emitted, Indirect, MapSettings, PILOT};
+pub use settings::{Amount, Emitted, Indirect, MapSettings, MediumSamples, PILOT};
 
 use super::beams::BeamMap;
 use super::importance::Importance;
+use super::planes::PlaneMap;
 use super::{Part, Pass, PassReport, PhotonMap, Photons, Run};
 use crate::error::Result;
 use crate::rng::Purpose;
@@ -79,12 +80,40 @@ pub struct Maps {
     pub caustic: Option<PhotonMap>,
     /// Photons in media that do not come straight from a light.
     pub volume: Option<PhotonMap>,
-    /// Their flights, in place of them.
+    /// Their flights, in place of them; beside planes those that begin on a body.
     pub beams: Option<BeamMap>,
+    /// Planes of flights, in place of them.
+    pub planes: Option<PlaneMap>,
     /// Where the global map is to be read: this decided what it holds.
     pub indirect: Indirect,
+    /// What the volume map holds.
+    pub media: MediumSamples,
     /// What filling them took.
     pub report: MapReport,
+}
+
+impl Maps {
+    /// No map at all.
+    pub fn none(indirect: Indirect) -> Self {
+        Maps {
+            global: None,
+            caustic: None,
+            volume: None,
+            beams: None,
+            planes: None,
+            indirect,
+            media: MediumSamples::Points,
+            report: MapReport::default(),
+        }
+    }
+
+    /// What the global, the caustic and the volume map hold: photons, and in place of those in media beams and planes.
+    pub fn stored(&self) -> [usize; 3] {
+        let held = |map: &Option<PhotonMap>| map.as_ref().map_or(0, PhotonMap::stored);
+        let of_beams = self.beams.as_ref().map_or(0, BeamMap::stored);
+        let of_planes = self.planes.as_ref().map_or(0, PlaneMap::stored);
+        [held(&self.global), held(&self.caustic), held(&self.volume) + of_beams + of_planes]
+    }
 }
 
 /// Fills the maps that the scene needs.
@@ -120,7 +149,7 @@ pub fn fill_by_importance(
 /// [`PhotonTree::bytes`](crate::photons::PhotonTree::bytes).
 ///
 /// # Errors
-/// `Error::Cancelled`; `Error::NonFinite` if a photon was not finite.
+/// those of [`Run::pass`]; where there are planes, those of [`PlaneMap::new`]
 pub fn fill_counted(
     scene: &Scene,
     settings: &MapSettings,
@@ -157,6 +186,7 @@ pub fn fill_part(
     progress: &dyn Progress,
 ) -> Result<Maps> {
     scene.check_emission()?;
+    settings.media.check(scene)?;
     let emitters = Emitters::of(scene, importance);
     let (Emitted { global, volume, caustic }, mut report) = (emitted, MapReport::default());
     let mut build = |parts: Vec<Photons>, emitted: u64| {
@@ -171,8 +201,8 @@ pub fn fill_part(
         map
     };
     let shot = |purpose: Purpose, class: Class, [global, volume]: [u64; 2]| -> Result<Pass> {
-        let (count, beams) = (global.max(volume), settings.beams);
-        let store = Classes { class, global, volume, beams };
+        let count = global.max(volume);
+        let store = Classes { class, global, volume, media: settings.media };
         let histories = part.histories(count);
         progress.stage("emission", histories.end - histories.start);
         let run = Run { purpose, part, ..class.run(scene, &emitters, importance, settings, count) };
@@ -187,7 +217,8 @@ pub fn fill_part(
     };
     let main = shot(Purpose::Photons, Class::Main(settings.indirect), [global, volume])?;
     let surfaces = build(main.surfaces, global)?;
-    let media = if settings.beams.is_some() { None } else { build(main.media, volume)? };
+    let is_of_points = settings.media == MediumSamples::Points;
+    let points = if is_of_points { build(main.media, volume)? } else { None };
     // Caustic photons of histories that the first pass has run too would be the same photons.
     let pass = shot(Purpose::Caustics, Class::Caustic, [caustic, 0])?;
     let focused = build(pass.surfaces, caustic)?;
@@ -198,17 +229,16 @@ pub fn fill_part(
         report.projection_cells += emitter.projection_cells();
         report.projected = emitter.kept();
     }
-    let beams = match settings.beams.is_some() && volume > 0 {
-        true => {
-            let start = Instant::now();
-            let side = scene.periodic_cell().map(|cell| cell.side);
-            let map = BeamMap::new(main.beams, volume, side)?;
-            report.build += start.elapsed();
-            Some(map)
-        }
-        false => None,
-    };
-    report.bytes = [&surfaces, &media, &focused].into_iter().flatten().map(|map| map.tree().bytes()).sum();
+    let start = Instant::now();
+    let side = scene.periodic_cell().map(|cell| cell.side);
+    let has_beams = settings.media.beams().is_some() && volume > 0;
+    let beams = has_beams.then(|| BeamMap::new(main.beams, volume, side)).transpose()?;
+    let has_planes = settings.media.has_planes() && volume > 0;
+    let planes = has_planes.then(|| PlaneMap::new(main.planes, volume, side)).transpose()?;
+    report.build += start.elapsed();
+    report.bytes = [&surfaces, &points, &focused].into_iter().flatten().map(|map| map.tree().bytes()).sum();
     report.bytes += beams.as_ref().map_or(0, |map| map.tree().bytes());
-    Ok(Maps { global: surfaces, caustic: focused, volume: media, beams, indirect: settings.indirect, report })
+    report.bytes += planes.as_ref().map_or(0, |map| map.tree().bytes());
+    let MapSettings { indirect, media, .. } = *settings;
+    Ok(Maps { global: surfaces, caustic: focused, volume: points, beams, planes, indirect, media, report })
 }

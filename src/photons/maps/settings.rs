@@ -1,6 +1,9 @@
 //! What the maps are filled with.
 
+use crate::error::{Error, Result};
 use crate::photons::beams::BeamLength;
+use crate::scene::Scene;
+use crate::surface::Surface;
 
 /// Histories of the pilot that says how many photons to emit where a number of stored ones is asked for.
 pub const PILOT: u64 = 10_000;
@@ -34,6 +37,58 @@ pub enum Indirect {
     Seen,
 }
 
+/// What the volume map holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MediumSamples {
+    /// Photons where they collide.
+    #[default]
+    Points,
+    /// Their flights, as far as this, in place of them.
+    Beams(BeamLength),
+    /// Planes of all flights: what media scatter twice and more. Beside them flights that begin on a body, as beams of this length, if
+    /// there are any.
+    Planes(Option<BeamLength>),
+}
+
+impl MediumSamples {
+    /// Beams of this length, and planes, if they are asked for; points otherwise.
+    pub fn new(beams: Option<BeamLength>, has_planes: bool) -> Self {
+        match (has_planes, beams) {
+            (true, beside) => MediumSamples::Planes(beside),
+            (false, Some(length)) => MediumSamples::Beams(length),
+            (false, None) => MediumSamples::Points,
+        }
+    }
+
+    /// How far flights go that are stored as beams, if some are.
+    pub fn beams(self) -> Option<BeamLength> {
+        match self {
+            MediumSamples::Points => None,
+            MediumSamples::Beams(length) => Some(length),
+            MediumSamples::Planes(beside) => beside,
+        }
+    }
+
+    /// Whether planes of flights are stored.
+    pub fn has_planes(self) -> bool {
+        matches!(self, MediumSamples::Planes(_))
+    }
+
+    /// Checks that they bring all light of a scene's media that is not direct there.
+    ///
+    /// # Errors
+    /// `Error::Scene` for planes without beams beside bodies that light comes from, or through
+    pub fn check(self, scene: &Scene) -> Result<()> {
+        let is_dark = |surface: &Surface| matches!(surface, Surface::Black(_));
+        match self != MediumSamples::Planes(None) || scene.objects().iter().all(|o| is_dark(&o.surface)) {
+            true => Ok(()),
+            false => Err(Error::Scene(
+                "planes hold nothing of the light that comes to media from bodies; allowed: beams beside them (a beam radius)".into(),
+            )),
+        }
+    }
+}
+
 /// What the maps are filled with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MapSettings {
@@ -43,8 +98,8 @@ pub struct MapSettings {
     pub caustic: Amount,
     /// Photons of the volume map, used where the scene has media.
     pub volume: Amount,
-    /// How far flights go that, as beams, take the place of photons in the volume map, and are counted there; none for photons.
-    pub beams: Option<BeamLength>,
+    /// What it holds, and what is counted there.
+    pub media: MediumSamples,
     /// Where the global map will be read.
     pub indirect: Indirect,
     /// Seed of the whole computation.

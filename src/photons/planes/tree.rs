@@ -139,6 +139,13 @@ impl PlaneTree {
         &self.planes
     }
 
+    /// Memory that it occupies \[bytes\].
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.planes[..])
+            + size_of_val(&self.pieces[..])
+            + self.levels.iter().map(|level| size_of_val(&level[..])).sum::<usize>()
+    }
+
     /// The corners of the box about all of them; none if there are none.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         self.bounds

@@ -15,7 +15,7 @@ use turbid::photons::planes::PlaneMap;
 use turbid::photons::{Emitter, Histories, Photon, PhotonMap, Run, Storage};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Scene;
-use turbid::transport::{Flags, NoProgress, Passage};
+use turbid::transport::{NoProgress, Passage, Walker};
 
 /// All cells.
 pub fn groups(settings: &Settings) -> Vec<Group> {
@@ -43,15 +43,15 @@ impl Storage for Twice {
         self.0 == Method::Beams
     }
 
-    fn on_flight(&self, _: u64, order: u32, _: Flags) -> bool {
-        order > 0
+    fn on_flight(&self, _: u64, walker: &Walker) -> bool {
+        walker.order > 0
     }
 
     fn has_planes(&self) -> bool {
         self.0 == Method::Planes
     }
 
-    fn on_plane(&self, _: u64, _: u32, _: Flags) -> bool {
+    fn on_plane(&self, _: u64, _: &Walker) -> bool {
         true
     }
 }

@@ -10,7 +10,7 @@ use turbid::math::{FOUR_PI, Positive, Ray};
 use turbid::photons::beams::BeamMap;
 use turbid::photons::{Photon, PhotonMap, Storage};
 use turbid::scene::Scene;
-use turbid::transport::Flags;
+use turbid::transport::Walker;
 
 /// Photons on their way to the first event: where they collide, and how they get there.
 pub struct Uncollided {
@@ -29,8 +29,8 @@ impl Storage for Uncollided {
         self.beams
     }
 
-    fn on_flight(&self, _: u64, order: u32, _: Flags) -> bool {
-        order == 0
+    fn on_flight(&self, _: u64, walker: &Walker) -> bool {
+        walker.order == 0
     }
 }
 
