@@ -25,6 +25,14 @@ fn bad_values_give_one_line_and_exit_2() {
         let text = String::from_utf8(run.get_output().stderr.clone()).unwrap();
         assert!(text.starts_with("error: ") && text.trim_end().lines().count() == 1, "{bad:?}: {text}");
     }
+    for (bad, allowed) in [
+        (["--seed", "x"], "allowed: whole numbers from 0"),
+        (["--threads", "x"], "allowed: whole numbers from 1 to 1024"),
+    ] {
+        let run = study().args(bad).assert().code(2).stdout("");
+        let text = String::from_utf8(run.get_output().stderr.clone()).unwrap();
+        assert!(text.contains(allowed), "{bad:?}: {text}");
+    }
 }
 
 #[test]

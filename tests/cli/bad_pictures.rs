@@ -88,6 +88,10 @@ fn sizes_and_numbers_out_of_range() {
     refuse(&["--planes", "--ray-radius", "0.1"], &["--planes", "--ray-radius"]);
     refuse(&["--planes", "--volume-k", "20"], &["--planes", "--volume-k"]);
     refuse(&["--planes"], &["allowed: beams beside them (a beam radius)"]);
+    refuse(
+        &["--planes", "--beam-radius", "1", "--plan", "full"],
+        &["--plan full takes", "allowed with them: auto"],
+    );
     refuse(&["--ray-ends", "own"], &["--ray-ends is own", "allowed: with --ray-radius or --beam-radius"]);
     refuse(
         &["--ray-ends", "own", "--ray-radius", "1"],

@@ -106,6 +106,10 @@ fn memory_is_as_said() {
     let by_light = ["render", text(&thick), "-o", &exr, "--with", "light", "--samples", "1"];
     let taken = peak(&by_light);
     assert!(taken < 70e6, "{taken}");
+    refuses_naming(
+        &[&bins("1")[..], &["--memory", "100K"]].concat(),
+        &["--memory is 100 kB, and the program itself takes", "allowed: more"],
+    );
     let told = turbid(&[&by_light[..], &["--memory", "40M"]].concat()).output().unwrap();
     let told = String::from_utf8(told.stderr).unwrap();
     assert!(told.contains("a picture of 4096 pixels takes about 70 MB of memory"), "{told}");
@@ -221,11 +225,14 @@ fn wrong_settings_are_told() {
         &["steps of 6.00e-1 L", "wrong where it is dense", "--step 4.7e-1"],
     );
     // What finds nothing brings nothing.
-    for thin in [["--beam-radius", "1e-9"], ["--ray-radius", "1e-6"]] {
+    for (thin, what) in [
+        (["--beam-radius", "1e-9"], "a beam within 1.00e-9 L"),
+        (["--ray-radius", "1e-6"], "a photon within 1.00e-6 L"),
+    ] {
         told(
             &fine,
             &[&thin[..], &["--gather-rays", "0"]].concat(),
-            &["look-ups in the volume map found a photon or a beam"],
+            &["look-ups in the volume map found", what, "brings no light: --volume"],
         );
     }
     let faint = fine.replace("power = 1 ", "power = 1e-24 ");

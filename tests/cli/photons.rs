@@ -701,4 +701,38 @@ fn few_maps_do_not_tell_tails() {
         assert!(done.status.success(), "{said}");
         assert_eq!(said.contains("peak of a phase function"), is_told, "{g} {measure} {maps}: {said}");
     }
+    // Nor one image in each face where the radius is larger than the medium.
+    let file = folder.file("scene.toml", &scene("0", "fluence = { at = [0.1, 0.3, 0.1] }"));
+    let within = ["measure", text(&file), "--with", "photons", "--photons", "1000", "--radius"];
+    for (more, is_told) in [
+        (["3", "--boundary", "reflection"], true),
+        (["1.9", "--boundary", "reflection"], false),
+        (["3", "--boundary", "clipped"], false),
+    ] {
+        let done = turbid(&[&within[..], &more].concat()).output().unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert!(done.status.success(), "{said}");
+        assert_eq!(
+            said.contains("no images of images: within 3 L of a place in a medium 2 L across"),
+            is_told,
+            "{said}"
+        );
+    }
+    // Neither do few paths where hardly any turns.
+    let fluence = "fluence = { at = [0.1, 0.3, 0.1] }";
+    for (g, measure, is_told) in [
+        ("0.999", radiance, true),
+        ("-0.999", radiance, true),
+        ("0.9", radiance, false),
+        ("0.999", fluence, false),
+    ] {
+        let file = folder.file("scene.toml", &scene(g, measure));
+        for with in ["paths", "bidirectional"] {
+            let done =
+                turbid(&["measure", text(&file), "--with", with, "--samples", "1e4"]).output().unwrap();
+            let said = String::from_utf8(done.stderr).unwrap();
+            assert!(done.status.success(), "{said}");
+            assert_eq!(said.contains("--samples 4e5 or more tells"), is_told, "{with} {g} {measure}: {said}");
+        }
+    }
 }

@@ -71,6 +71,55 @@ fn pictures_have_the_same_bits_on_any_number_of_threads() {
     assert!(said.contains(" to the camera"), "{said}");
 }
 
+/// By planes the same bits on any number of threads, what was found told by its kind, the settings in the header; beams that find nothing
+/// and peaks are told of.
+#[test]
+fn pictures_by_planes_tell_what_they_rest_on() {
+    let folder = Folder::new();
+    let scene = room(&folder, "room.toml", ("", ""));
+    let path = folder.0.path().join("a.exr");
+    let render = |scene: &Path, more: &[&str]| {
+        let arguments = ["render", text(scene), "-o", text(&path), "--planes"];
+        let done = crate::turbid(&[&arguments[..], &QUICK, more].concat()).output().unwrap();
+        assert!(done.status.success(), "{more:?}");
+        [done.stdout, done.stderr].map(|text| String::from_utf8(text).unwrap())
+    };
+    let threads = |number: &str| {
+        let [said, told] = render(&scene, &["--beam-radius", "0.1", "--threads", number]);
+        let volume = said.lines().find(|line| line.starts_with("gathers        volume")).unwrap();
+        assert!(
+            volume.contains(" beams within 1.00e-1 L and ") && volume.ends_with(" planes in the mean"),
+            "{said}"
+        );
+        assert!(said.contains("planes and beams stored of 2000 photons emitted"), "{said}");
+        assert!(!told.contains("peak") && !told.contains("none of"), "{told}");
+        std::fs::read(&path).unwrap()
+    };
+    let picture = threads("1");
+    assert!(picture == threads("2"));
+    assert!(String::from_utf8_lossy(&picture).contains("\"planes\":true"));
+    let [_, told] = render(&scene, &["--beam-radius", "1e-30"]);
+    assert!(
+        told.contains(
+            "found a beam within 1.00e-30 L, so that it brings no light that comes to media from bodies"
+        ),
+        "{told}"
+    );
+    // Without bodies there are no beams to be found.
+    let start = ROOM.find("[[objects]]").unwrap();
+    let open =
+        [&ROOM[..start], &ROOM[ROOM.find("[[lights]]").unwrap()..]].concat().replace("g = 0.0", "g = 0.9");
+    let [said, told] = render(&folder.file("open.toml", &open), &[]);
+    assert!(said.contains(" planes stored of 2000 photons emitted") && !said.contains("beams"), "{said}");
+    assert!(
+        told.contains("a plane in the peak of a phase function brings 190 times")
+            && !told.contains("none of"),
+        "{told}"
+    );
+    let own = ["render", text(&scene), "-o", text(&path), "--ray-radius", "0.1", "--ray-ends", "own"];
+    refuses_naming(&own, &["--ray-ends: rays end for each photon"]);
+}
+
 /// Where photons know no better a guided picture is that of paths, bit by bit, and says so; provenance has the guide of a picture
 /// by paths. Other methods refuse it, but for a reference's sake.
 #[test]

@@ -59,7 +59,10 @@ fn another_k_has_other_first_radii() {
         vec!["render", "fogbox", "-o", text(&out), "--state", text(&state), "--gather-rays", "0", "--quiet"];
     all.extend(full);
     succeeds(&[&all[..], &["--maps", "2"]].concat());
-    refuses_naming(&[&all[..], &["--maps", "3", "--k", "100"]].concat(), &["a.state", "another first radii"]);
+    refuses_naming(
+        &[&all[..], &["--maps", "3", "--k", "100"]].concat(),
+        &["a.state", "differs in first radii"],
+    );
     succeeds(&[&all[..], &["--maps", "3"]].concat());
 }
 
@@ -147,7 +150,7 @@ fn what_cannot_be_resumed_is_refused_and_left_as_it_is() {
         if let Some(at) = all.iter().position(|known| *known == more[0]) {
             all.drain(at..at + 2);
         }
-        refuses_naming(&[&all[..], more].concat(), &["a.state", &format!("another {word}")]);
+        refuses_naming(&[&all[..], more].concat(), &["a.state", &format!("differs in {word}")]);
     }
     let body = kept.iter().enumerate().filter(|(_, byte)| **byte == b'\n').nth(2).unwrap().0 + 1;
     // A number that is as good as any other, but is not what was written.

@@ -1,6 +1,7 @@
 //! What the user chooses.
 
 use super::sets;
+use crate::harness::{seed, threads};
 use clap::Parser;
 use std::path::{Path, PathBuf};
 
@@ -15,7 +16,7 @@ pub struct Settings {
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = set_name)]
     pub only: Vec<String>,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed)]
     pub seed: u64,
     /// Folder of the page [default: results/benchmarks, with --quick results/local/benchmarks, with --pack results/pack]
     #[arg(long)]
@@ -24,7 +25,7 @@ pub struct Settings {
     #[arg(long, value_name = "NAME=FILE", value_parser = theirs)]
     pub theirs: Vec<(String, PathBuf)>,
     /// Number of threads [default: all cores]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = threads)]
     pub threads: Option<u16>,
     /// Forget what earlier runs answered
     #[arg(long)]

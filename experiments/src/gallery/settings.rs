@@ -1,6 +1,7 @@
 //! What the user chooses.
 
 use super::pictures::{self, Picture};
+use crate::harness::{seed, threads};
 use clap::Parser;
 use std::path::PathBuf;
 
@@ -18,7 +19,7 @@ pub struct Settings {
     #[arg(long)]
     pub draft: bool,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed)]
     pub seed: u64,
     /// Folder of the page [default: results/gallery, with --quick or --draft results/local/gallery]; with --print of its pictures
     /// [default: results/print]
@@ -28,7 +29,7 @@ pub struct Settings {
     #[arg(long, default_value = "experiments/scenes")]
     pub scenes: PathBuf,
     /// Number of threads [default: all cores]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = threads)]
     pub threads: Option<u16>,
     /// Forget what earlier runs made
     #[arg(long)]

@@ -54,7 +54,7 @@ pub(crate) use outputs::{check_folder, check_later, read_if_there};
 pub(crate) use panics::{caught, guarded};
 pub use parameters::Parameters;
 pub use part::Share;
-pub(crate) use program::{on_threads, one_line, program};
+pub(crate) use program::{on_threads, one_line, program, seed, threads};
 pub(crate) use progress::duration;
 pub use progress::{Terminal, Watch, say};
 pub use provenance::Provenance;

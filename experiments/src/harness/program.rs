@@ -48,6 +48,17 @@ pub(crate) fn on_threads<T: Send>(
     pool.install(work)
 }
 
+/// A seed on the command line.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("allowed: whole numbers from 0 to {}", u64::MAX))
+}
+
+/// A number of threads on the command line.
+pub(crate) fn threads(text: &str) -> Result<u16, String> {
+    let number = text.parse().ok().filter(|number| (1..=1024).contains(number));
+    number.ok_or_else(|| "allowed: whole numbers from 1 to 1024".to_string())
+}
+
 /// A message of the parser in one line, without usage and hints where to look.
 pub(crate) fn one_line(text: &str) -> String {
     let parts = text.lines().map(str::trim).filter(|part| !part.is_empty());

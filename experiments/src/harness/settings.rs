@@ -1,5 +1,6 @@
 //! What the user chooses: the flags shared by all experiments.
 
+use super::program::{seed, threads};
 use super::question::stem;
 use super::{Question, Share};
 use clap::error::ErrorKind;
@@ -83,7 +84,7 @@ struct Flags {
     #[arg(long)]
     full: bool,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = SEED)]
+    #[arg(long, default_value_t = SEED, value_parser = seed)]
     seed: u64,
     /// Factor on every number of photons
     #[arg(long, value_name = "SCALE", default_value_t = 1.0, value_parser = scale)]
@@ -92,7 +93,7 @@ struct Flags {
     #[arg(long)]
     out: Option<PathBuf>,
     /// Number of threads [default: all cores]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = threads)]
     threads: Option<u16>,
     /// Forget the cells of earlier runs
     #[arg(long)]

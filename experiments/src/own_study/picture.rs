@@ -126,7 +126,10 @@ impl Picture {
     }
 
     /// How maps are read by an estimator in media, and its kernel and gather on surfaces.
-    fn settings(&self, scene: &Scene, estimator: &Estimator) -> turbid::Result<Settings> {
+    ///
+    /// # Errors
+    /// None is known
+    pub fn settings(&self, scene: &Scene, estimator: &Estimator) -> turbid::Result<Settings> {
         let mut settings = Settings::for_scene(scene, LEAST_K)?;
         settings.volume = *estimator;
         settings.global = (estimator.kernel, estimator.gather);

@@ -13,7 +13,6 @@ use turbid::exchange::{Opened, open};
 use turbid::integrators::mapper::scene_size;
 use turbid::output::one_line;
 use turbid::photons::check_end;
-use turbid::photons::planes::check_planes;
 use turbid::scene::{BUILTIN, Binned, Quantity, QuantityFile, Scene, SceneFile, SceneSource, SensorFile};
 use turbid::sensor::{SensorMaps, usual_reach};
 
@@ -119,9 +118,7 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
         }
         for estimator in &estimators {
             estimator.check_ends(&scene).with_context(|| estimator.name())?;
-            if estimator.has_planes {
-                check_planes(&scene).with_context(|| estimator.name())?;
-            }
+            picture.settings(&scene, estimator)?.media().check(&scene).with_context(|| estimator.name())?;
         }
         ensure!(
             places.len() <= MOST_PLACES,

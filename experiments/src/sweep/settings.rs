@@ -1,6 +1,7 @@
 //! What the user chooses.
 
 use super::measure::Effort;
+use crate::harness::{seed, threads};
 use clap::Parser;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -15,7 +16,7 @@ pub struct Settings {
     #[arg(long, value_name = "FROM..TO", value_parser = seeds, default_value = "0..200", conflicts_with_all = ["seed", "scene"])]
     pub seeds: Range<u64>,
     /// One scene, with all that was compared; with --scene the seed of the random numbers
-    #[arg(long)]
+    #[arg(long, value_parser = seed)]
     pub seed: Option<u64>,
     /// A scene of your own with a camera, a scene file or one of Mitsuba (.xml), in place of a drawn one
     #[arg(long, value_name = "FILE")]
@@ -24,7 +25,7 @@ pub struct Settings {
     #[arg(long, default_value_t = 1.0)]
     pub effort: f64,
     /// Scenes at a time [default: all cores]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = threads)]
     pub threads: Option<u16>,
     /// Folder of the results, a small file a seed
     #[arg(long, default_value = "results/local/sweep")]

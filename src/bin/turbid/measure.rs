@@ -4,6 +4,7 @@ use super::given::{Given, notes as notes_of_given};
 use super::learn::learn;
 use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
+use super::notes::{PEAKED, peak};
 use super::options;
 use super::picture::{
     BlurName, BoundaryName, EndsName, LengthName, RejectName, beam_radius, ray_ends, ray_k, ray_radius,
@@ -15,11 +16,11 @@ use anyhow::{Context, bail};
 use clap::{ArgMatches, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel, RayEnds};
 use turbid::geometry::Voxels;
 use turbid::integrators::Guides;
 use turbid::math::{FOUR_PI, Positive};
-use turbid::medium::Medium;
 use turbid::output::{
     RunInfo, check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
 };
@@ -394,7 +395,8 @@ impl Measure {
             _ => by_guided_paths(scene, &settings, guides, &bar),
         };
         bar.finish();
-        Ok((measurements.with_context(|| self.source.name())?, Vec::new()))
+        let notes = note_of_rare_turns(scene, self.samples).into_iter().collect();
+        Ok((measurements.with_context(|| self.source.name())?, notes))
     }
 
     /// How maps are read, each of so many photons.
@@ -485,7 +487,7 @@ impl Measure {
         let counts_uncollided =
             scene.sensors().iter().any(|s| is_fluence(&s.quantity) && s.orders.and(&self.orders).contains(0));
         let mut notes = notes_of_given(scene, has_uncollided, counts_uncollided);
-        notes.extend(notes_of_gathers(&readings, settings.estimator.gather));
+        notes.extend(notes_of_gathers(scene, &readings, &settings.estimator));
         notes.extend(note_of_peaks(scene, self.photons_from.len() as u64));
         Ok((readings.measurements, notes))
     }
@@ -545,30 +547,43 @@ impl Measure {
         bar.finish();
         let result = result.with_context(|| self.source.name())?;
         let mut notes = vec![ledger_note(&result.ledger)];
-        notes.extend(notes_of_gathers(&result, settings.estimator.gather));
+        notes.extend(notes_of_gathers(scene, &result, &settings.estimator));
         notes.extend(note_of_peaks(scene, self.maps));
         Ok((result.measurements, notes))
     }
 }
 
-/// A photon in the peak of a phase function, forwards or backwards, brings so many times what it brings on average, or more: radiances may then
-/// hang on few of them. In a box of fog beside a lamp errors of 16 maps held where it was 45 (g = 0.8), and the mean was 26 of
-/// them low where it was 190 (g = 0.9).
-const PEAKED: f64 = 20.0;
-
-/// What the errors of radiances do not tell where phase functions are peaked and maps are few.
-fn note_of_peaks(scene: &Scene, maps: u64) -> Option<String> {
-    let reads_radiance = scene.sensors().iter().any(|sensor| match &sensor.quantity {
+fn reads_radiance(scene: &Scene) -> bool {
+    scene.sensors().iter().any(|sensor| match &sensor.quantity {
         Quantity::Radiance(_) => true,
         Quantity::Binned(binned) => matches!(binned, Binned::Radiance { .. }),
         _ => false,
-    });
-    let peak = |medium: &Medium| {
-        let phase = medium.phase();
-        FOUR_PI * phase.eval(0.0, 2.0).max(phase.eval(2.0, 0.0))
-    };
+    })
+}
+
+/// Paths times what their medium scatters to the side, over the mean, below which a run may draw no path that turns towards a light. In a
+/// cube with a lamp of 0.05 sr means without a heavy tail were too small by factors of 5 and 20 at 7 (g = 0.999 and 0.9999) and 70
+/// (0.9999), in one of three runs or more; at 70 (0.99) and from 370 (0.95) on none was.
+const TURNING: f64 = 300.0;
+
+/// What the errors of radiances do not tell where paths rarely turn.
+fn note_of_rare_turns(scene: &Scene, paths: u64) -> Option<String> {
+    let sides = scene.media().iter().filter(|medium| medium.is_colliding() && peak(medium) >= PEAKED);
+    let sides = sides.map(|medium| FOUR_PI * medium.phase().eval(1.0, 1.0)).filter(|side| *side > 0.0);
+    let least = sides.fold(f64::INFINITY, f64::min);
+    (reads_radiance(scene) && paths as f64 * least < TURNING).then(|| {
+        format!(
+            "a medium scatters to the side {least:.1e} times the mean: radiances may hang on turns that none of {paths} paths took, and be too \
+             small by any factor, whatever their errors say; --samples {:.0e} or more tells",
+            TURNING / least
+        )
+    })
+}
+
+/// What the errors of radiances do not tell where phase functions are peaked and maps are few.
+fn note_of_peaks(scene: &Scene, maps: u64) -> Option<String> {
     let highest = scene.media().iter().map(peak).fold(0.0, f64::max);
-    (reads_radiance && highest >= PEAKED && (2..TELLS_TAIL).contains(&maps)).then(|| {
+    (reads_radiance(scene) && highest >= PEAKED && (2..TELLS_TAIL).contains(&maps)).then(|| {
         format!(
             "a photon in the peak of a phase function brings {highest:.0} times the mean one: radiances may hang on few photons, and be wrong \
              by more than the errors of {maps} maps say; --maps {TELLS_TAIL} or more tells"
@@ -577,9 +592,18 @@ fn note_of_peaks(scene: &Scene, maps: u64) -> Option<String> {
 }
 
 /// What estimates from maps lack.
-fn notes_of_gathers(readings: &PhotonReadings, gather: Gather) -> Vec<String> {
+fn notes_of_gathers(scene: &Scene, readings: &PhotonReadings, estimator: &Estimator) -> Vec<String> {
     let PhotonReadings { beyond, underfull, gathers, .. } = readings;
     let mut notes = Vec::new();
+    let regions = scene.regions().iter().filter(|region| region.medium.is_colliding());
+    let thinnest = regions.map(|region| region.shape.shortest_extent()).fold(f64::INFINITY, f64::min);
+    let radius = estimator.gather.cap();
+    if estimator.treatment == Treatment::Reflection && estimator.gather.k().is_none() && radius > thinnest {
+        notes.push(format!(
+            "--boundary reflection takes images of photons, and no images of images: within {radius} L of a place in a medium {thinnest} L \
+             across estimates may be far too small; --boundary clipped, or a smaller --radius"
+        ));
+    }
     if *beyond > 0 {
         notes.push(format!(
             "{beyond} of {gathers} balls reach beyond their medium, where no photons are: those estimates are biased low"
@@ -588,7 +612,7 @@ fn notes_of_gathers(readings: &PhotonReadings, gather: Gather) -> Vec<String> {
     if *underfull > 0 {
         notes.push(format!(
             "{underfull} of {gathers} estimates found fewer than k photons within the cap of {} L, and used those",
-            gather.cap()
+            radius
         ));
     }
     notes

@@ -71,6 +71,13 @@ impl Memory {
         let Some(left) = self.left().filter(|left| bytes > *left) else { return Ok(()) };
         let (takes, has) = (in_words(bytes), in_words(left.max(0.0)));
         let whose = if self.memory.is_some() { "left by --memory" } else { "free" };
+        if let Some(given) = self.memory.filter(|_| left <= 0.0) {
+            let held = in_words(given as f64 - left);
+            bail!(
+                "--memory is {}, and the program itself takes {held}; allowed: more",
+                in_words(given as f64)
+            );
+        }
         let part = (left - fixed) / (bytes - fixed);
         if part.is_nan() || part <= 0.0 {
             bail!(

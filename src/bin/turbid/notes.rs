@@ -6,6 +6,10 @@ use std::io::Result;
 use turbid::geometry::Shape;
 use turbid::integrators::StepRule;
 use turbid::integrators::mapper::{Gathers, Report, Settings};
+use turbid::math::FOUR_PI;
+use turbid::medium::Medium;
+use turbid::phase::PhaseFunction;
+use turbid::photons::maps::MediumSamples;
 use turbid::scene::Scene;
 use turbid::sensor::{Film, Pixel};
 use turbid::surface::Surface;
@@ -108,13 +112,18 @@ pub fn tell_gathers(
                 "the {name} map holds {stored} photons, fewer than an estimate takes, {k}: --{name} for more of them"
             ))?;
         } else if gathers.found == 0 {
-            let (within, or) = match radius > 0.0 {
-                true => (format!(" or a beam within {radius:.2e} L"), ", or a larger radius"),
-                false => (" or a plane".to_string(), ""),
+            let (what, brings) = match settings.media() {
+                _ if name != "volume" => ("photon", "no light"),
+                MediumSamples::Points => ("photon", "no light"),
+                MediumSamples::Beams(_) => ("beam", "no light"),
+                MediumSamples::Planes(None) => continue,
+                // No body sends any.
+                MediumSamples::Planes(_) if scene.objects().is_empty() => continue,
+                MediumSamples::Planes(_) => ("beam", "no light that comes to media from bodies"),
             };
             note(&format!(
-                "none of the {} look-ups in the {name} map found a photon{within}, so that it brings no light: --{name} for more of \
-                 them{or}",
+                "none of the {} look-ups in the {name} map found a {what} within {radius:.2e} L, so that it brings {brings}: --{name} \
+                 for more of them, or a larger radius",
                 gathers.count
             ))?;
         } else if 2 * gathers.underfull > gathers.count {
@@ -148,4 +157,27 @@ pub fn tell_gathers(
         }
     }
     Ok(())
+}
+
+/// A photon in the peak of a phase function, forwards or backwards, brings so many times what it brings on average, or more: radiances may then
+/// hang on few of them. In a box of fog beside a lamp errors of 16 maps held where it was 45 (g = 0.8), and the mean was 26 of
+/// them low where it was 190 (g = 0.9).
+pub const PEAKED: f64 = 20.0;
+
+/// How many times the mean a medium scatters into the peak of its phase function.
+pub fn peak(medium: &Medium) -> f64 {
+    let phase = medium.phase();
+    FOUR_PI * phase.eval(0.0, 2.0).max(phase.eval(2.0, 0.0))
+}
+
+/// Says where planes make a picture too dark: in peaked media most of the light hangs on few of them.
+pub fn tell_planes(scene: &Scene, settings: &Settings) -> Result<()> {
+    let highest = scene.media().iter().map(peak).fold(0.0, f64::max);
+    if !settings.volume.has_planes || highest < PEAKED {
+        return Ok(());
+    }
+    note(&format!(
+        "a plane in the peak of a phase function brings {highest:.0} times the mean one: pictures of few planes are too dark, by more than \
+         their variance says; --beam-radius without --planes has lighter tails"
+    ))
 }

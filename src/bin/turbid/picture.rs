@@ -293,8 +293,9 @@ pub struct Readout {
     ray_ends: Option<EndsName>,
     /// Read light that is scattered twice and more in media from planes of photons' flights, without blur or bias: each flight and a
     /// scattering on it sweep one out. Beside bodies --beam-radius is needed too, for light that comes to the media from them. Homogeneous
-    /// media whose extinction is the same in all channels, no glass. Its variance is infinite: pixels have bright outliers, ever rarer
-    /// ones with more maps. --volume counts planes and beams.
+    /// media whose extinction is the same in all channels, without dielectric boundaries. Its variance is infinite: most pixels are a little
+    /// too dark and few far too bright, the more so the more peaked media scatter, and errors between maps are too small by what few maps
+    /// have not met yet. --volume counts planes and beams.
     #[arg(long, conflicts_with_all = ["ray_radius", "volume_k", "reject"])]
     planes: bool,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
@@ -514,6 +515,11 @@ impl Readout {
     /// Whether each photon has a radius of its own about rays.
     pub fn has_ray_k(&self) -> bool {
         self.ray_k.is_some()
+    }
+
+    /// Whether rays are read in ways that only homogeneous media allow.
+    pub fn needs_even_media(&self) -> bool {
+        self.planes || self.ray_ends == Some(EndsName::Own)
     }
 
     /// What the volume map holds.

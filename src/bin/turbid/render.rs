@@ -5,7 +5,7 @@ use super::learn::learn;
 use super::load::Source;
 use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
-use super::notes::{tell_empty, tell_gathers, tell_step, tell_variances};
+use super::notes::{tell_empty, tell_gathers, tell_planes, tell_step, tell_variances};
 use super::options;
 use super::picture::{Frame, Held, Photons, Readout, ToneArgs};
 use super::progress::Bar;
@@ -194,6 +194,9 @@ impl Render {
                 "--plan full is for pictures by photons and paths: light tracing reads no map and looks for nothing that \
                  could be left out; allowed with --with light: auto"
             ),
+            (_, PlanName::Full) if self.readout.needs_even_media() => bail!(
+                "--plan full takes every medium for one that varies, which --planes and --ray-ends own cannot read; allowed with them: auto"
+            ),
             (scene, PlanName::Full) => scene.with_full_plan()?,
         };
         let camera = self.frame.camera(&scene)?;
@@ -237,6 +240,7 @@ impl Render {
         )?;
         if self.with == With::Photons && scene.plan().has_media {
             tell_step(&scene, &usual)?;
+            tell_planes(&scene, &usual)?;
         }
         let scene_text = file.to_toml()?;
         // Every map is read as the first is.

@@ -87,7 +87,7 @@ impl State {
             let both =
                 if was.is_empty() || is.is_empty() { String::new() } else { format!(": {was}, now {is}") };
             bail!(
-                "{}: was made from another {key}{both}; allowed: the same scene, size and settings as before, or another name",
+                "{}: differs in {key}{both}; allowed: the same scene, size and settings as before, or another name",
                 named()
             );
         }

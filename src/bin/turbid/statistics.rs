@@ -91,7 +91,8 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         writeln!(text, "march steps    {}", work.steps)?;
         for (map, gathers) in [("global", &work.global), ("caustic", &work.caustic), ("volume", &work.volume)]
         {
-            writeln!(text, "gathers        {map:<8} {}", gathered(gathers))?;
+            let read = made.first_read.filter(|read| map == "volume" && read.volume.reads_rays());
+            writeln!(text, "gathers        {map:<8} {}", gathered(gathers, read.map(|read| read.media())))?;
         }
     }
     let mut tracking = work.work;
@@ -129,14 +130,25 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
     print(&text)
 }
 
-fn gathered(gathers: &Gathers) -> String {
+/// Look-ups; `along` how whole rays are read, if they are.
+fn gathered(gathers: &Gathers, along: Option<MediumSamples>) -> String {
     if gathers.count == 0 {
         return "0".to_string();
     }
-    let (each, radius) = (gathers.found as f64 / gathers.count as f64, gathers.mean_radius());
-    let within = if radius > 0.0 { format!(" photons within {radius:.2e} L") } else { " planes".to_string() };
-    let mut text =
-        format!("{}, {each:.1}{within} in the mean; {} found fewer than k", gathers.count, gathers.underfull);
+    let of_each = |number: u64| number as f64 / gathers.count as f64;
+    let about =
+        |what: &str| format!("{:.1} {what} within {:.2e} L", of_each(gathers.found), gathers.mean_radius());
+    let crossed = || format!("{:.1} planes", of_each(gathers.planes));
+    let found = match along {
+        None | Some(MediumSamples::Points) => about("photons"),
+        Some(MediumSamples::Beams(_)) => about("beams"),
+        Some(MediumSamples::Planes(None)) => crossed(),
+        Some(MediumSamples::Planes(Some(_))) => format!("{} and {}", about("beams"), crossed()),
+    };
+    let mut text = format!("{}, {found} in the mean", gathers.count);
+    if along.is_none() {
+        text.push_str(&format!("; {} found fewer than k", gathers.underfull));
+    }
     if gathers.unknown > 0 {
         text.push_str(&format!(
             "; {} on bodies too thin for their area to be found, taken for dark",

@@ -52,8 +52,10 @@ pub struct Gathers {
     pub radii: f64,
     /// Sum of the radii of those that found fewer \[L\].
     pub underfull_radii: f64,
-    /// Photons found.
+    /// Photons or beams found.
     pub found: u64,
+    /// Planes across rays, found beside beams or alone.
+    pub planes: u64,
     /// Photons found over the radius to the power that they spread in, d, and the same times the radius: their ratio is the mean radius where
     /// photons are, each look-up weighted by the density that it finds.
     pub density: [f64; 2],
@@ -85,7 +87,7 @@ impl Gathers {
     /// Counts planes across a stretch of a ray, which are not another look-up where they stand beside beams.
     fn add_planes(&mut self, estimate: &RayEstimate, is_beside: bool) {
         self.count += u64::from(!is_beside);
-        self.found += estimate.found as u64;
+        self.planes += estimate.found as u64;
     }
 
     /// Mean radius where photons are, which few look-ups in their midst weigh more than many far off \[L\]; none where none was found.
@@ -107,6 +109,7 @@ impl AddAssign for Gathers {
         self.radii += other.radii;
         self.underfull_radii += other.underfull_radii;
         self.found += other.found;
+        self.planes += other.planes;
         self.density = [0, 1].map(|i| self.density[i] + other.density[i]);
         self.unknown += other.unknown;
     }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::photons::beams::BeamLength;
+use crate::photons::planes::check_planes;
 use crate::scene::Scene;
 use crate::surface::Surface;
 
@@ -77,10 +78,14 @@ impl MediumSamples {
     /// Checks that they bring all light of a scene's media that is not direct there.
     ///
     /// # Errors
-    /// `Error::Scene` for planes without beams beside bodies that light comes from, or through
+    /// where there are planes, those of [`check_planes`], and `Error::Scene` without beams beside bodies that light comes from, or through
     pub fn check(self, scene: &Scene) -> Result<()> {
+        if self.has_planes() {
+            check_planes(scene)?;
+        }
         let is_dark = |surface: &Surface| matches!(surface, Surface::Black(_));
-        match self != MediumSamples::Planes(None) || scene.objects().iter().all(|o| is_dark(&o.surface)) {
+        let needs_beams = scene.plan().has_media && scene.objects().iter().any(|o| !is_dark(&o.surface));
+        match self != MediumSamples::Planes(None) || !needs_beams {
             true => Ok(()),
             false => Err(Error::Scene(
                 "planes hold nothing of the light that comes to media from bodies; allowed: beams beside them (a beam radius)".into(),

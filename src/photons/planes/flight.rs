@@ -16,7 +16,7 @@ pub fn check_planes(scene: &Scene) -> Result<()> {
     match is_even && !scene.plan().has_dielectrics {
         true => Ok(()),
         false => Err(Error::Scene(
-            "planes can be stored neither in media that vary or whose extinction differs by channel, nor beside dielectric bodies; \
+            "planes can be stored neither in media that vary or whose extinction differs by channel, nor beside dielectric bodies, index-matched ones among them; \
              allowed: beams (a beam radius), points along rays (a ray radius), or points in balls"
                 .into(),
         )),
