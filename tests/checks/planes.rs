@@ -42,7 +42,8 @@ fn scene(at: DVec3, regions: Vec<Region>, walls: Vec<Rectangle>) -> Scene {
     bounded(regions, walls.collect(), vec![light])
 }
 
-fn read(scene: &Scene, map: &PlaneMap, ray: &Ray, end: f64) -> f64 {
+/// What planes across a ray bring to its near end as far as this, in one medium of extinction 1.
+pub fn read(scene: &Scene, map: &PlaneMap, ray: &Ray, end: f64) -> f64 {
     let span = Interval { start: 0.0, end };
     PlaneEstimator.radiance(map, (ray, span), (scene, 0), &|t| Spectrum::grey(exp(-t))).value[0]
 }

@@ -5,21 +5,23 @@ use crate::checks::beams::{beam, by_maps};
 use crate::checks::ledger::{Room, layers_are_those_of_the_reference, mirror, reference, settings};
 use crate::checks::media::{layered, varying};
 use crate::checks::planes::{
-    Laser, a_laser_scattered_twice, a_plane_end_on_counts_in_full, in_planes, one_plane_by_hand,
+    Laser, a_laser_scattered_twice, a_plane_end_on_counts_in_full, in_planes, one_plane_by_hand, read,
 };
+use crate::support::quadrature::integrate;
 use crate::support::run::{paths, sensor};
 use crate::support::scenes::{
     CELL, Incidence, bounded, cuboid, homogeneous, incidence, lambertian, layer, point_light, rectangle,
     region, sphere,
 };
 use crate::support::verdict;
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Shape;
 use turbid::integrators::mapper::Settings;
-use turbid::math::{Interval, Positive, Ray, warp};
+use turbid::light::{Beam, Light, Section};
+use turbid::math::{FOUR_PI, Interval, Positive, Ray, cos, exp, sin, warp};
 use turbid::medium::Medium;
 use turbid::photons::beams::BeamKind;
 use turbid::photons::maps::Indirect;
@@ -285,6 +287,50 @@ fn radiance_in_planes_is_that_of_paths() {
                 );
             }
         }
+    }
+}
+
+/// A laser along the axis of a ball that scatters forwards or backwards by far the most, seen nearly along its light from all around it:
+/// scattered twice, by quadrature,
+///
+/// L = sigma_s^2 int int p(w0, w) p(w, -d) e^(-sigma_t (z + r + s))/r^2 ds dz.
+#[test]
+fn lasers_in_peaked_media() {
+    let shape = sphere(DVec3::Z * 6.0, 10.0);
+    let turned = |angle: f64, v: DVec3| DQuat::from_rotation_z(angle) * v;
+    let (away, origin) = (DVec3::new(sin(0.3), 0.0, cos(0.3)), DVec3::new(1.2, 0.5, 6.0));
+    let end = shape.interval(&Ray::new(origin, -away)).unwrap().end;
+    for (g, promise, seed) in [(0.9, 0.2, 11), (0.95, 0.25, 12), (-0.9, 0.3, 13)] {
+        let phase = |a: DVec3, b: DVec3| {
+            let way = 1.0 + g * g - 2.0 * g * a.dot(b);
+            (1.0 - g * g) / FOUR_PI / (way * way.sqrt())
+        };
+        let seen = |s: f64| {
+            let at = origin - away * s;
+            integrate(0.0, 16.0, 100, |z| {
+                let way = at - DVec3::Z * z;
+                let r = way.length();
+                phase(DVec3::Z, way / r) * phase(way / r, away) * exp(-(z + r + s)) / (r * r)
+            })
+        };
+        let expected = 0.25 * integrate(0.0, end, 60, seen);
+        let radius = 1e-9;
+        let section = Section::Disc { center: DVec3::ZERO, radius };
+        let irradiance = Spectrum::grey(1.0 / (PI * radius * radius));
+        let light = Light::Beam(Beam::new(DVec3::Z, irradiance, section).unwrap());
+        let scene = bounded(vec![region(shape.clone(), 1.0, 0.5, g)], vec![], vec![light]);
+        let mut moments = Moments::new();
+        for replicate in 0..100 {
+            let histories = Histories { count: 8000, seed, replicate, max_order: Some(0) };
+            let run = Run::new(&scene, &Emitter::by_power(&scene), histories).pass(&Both(true), &NoProgress);
+            let map = run.unwrap().into_planes().unwrap();
+            let look = |k: u32| {
+                let [origin, dir] = [origin, -away].map(|v| turned(f64::from(k) * PI / 50.0, v));
+                read(&scene, &map, &Ray::new(origin, dir), end)
+            };
+            moments.push((0..100).map(look).sum::<f64>() / 100.0);
+        }
+        verdict::agrees(&format!("g {g}"), &moments, (expected, 1e-6 * expected), promise * expected, seed);
     }
 }
 

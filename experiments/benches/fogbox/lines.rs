@@ -1,5 +1,5 @@
 //! Light that media scatter twice and more, by the ways to read a volume map along a ray: marched in balls, from points about the
-//! ray, from beams across it.
+//! ray, from beams across it, and from planes beside beams.
 
 use crate::{Round, WIDTH, squared_errors, timed};
 use anyhow::Result;
@@ -69,6 +69,8 @@ fn ways() -> Result<Vec<Way>> {
         let of_beams = standard.volume.along_beams(Positive::new("the radius", radius)?);
         add(format!("beams, r = {radius}"), BEAMS, of_beams, march, 0.0);
     }
+    let of_beams = standard.volume.along_beams(Positive::new("the radius", 0.1)?);
+    add("planes, beams r = 0.1".into(), BEAMS, of_beams.in_planes(), march, 0.0);
     Ok(ways)
 }
 
@@ -98,9 +100,10 @@ fn round(scene: &Scene, camera: &Camera, way: &Way, replicate: u64) -> Result<(R
         let mut maps = fill(scene, &filling, &NoProgress)?;
         let photons = Method::Photons(Mapper::new(scene, &maps, settings));
         let mut film = Film::new(camera.width(), camera.height());
-        looked_at = photons.extend(&mut film, camera, SAMPLES, streams, &NoProgress)?.volume.found;
+        let found = photons.extend(&mut film, camera, SAMPLES, streams, &NoProgress)?.volume;
+        looked_at = found.found + found.planes;
         pixels = layer(&film);
-        (maps.volume, maps.beams) = (None, None);
+        (maps.volume, maps.beams, maps.planes) = (None, None, None);
         let start = cpu_time::ThreadTime::now();
         let nothing = Method::Photons(Mapper::new(scene, &maps, settings));
         nothing.render(camera, SAMPLES, streams, &NoProgress)?;

@@ -2,9 +2,9 @@
 //!
 //! A ray in a direction of density cos/pi brings pi times the radiance along it as irradiance. The ray flies as far as
 //! a photon would. If it collides, it brings what the medium scatters there: single scattering by shadow rays and the
-//! volume map; planes are read along all of the way in place of it. If it passes, it brings what the diffuse surface behind reflects, from the global map, which holds every
-//! class of light there, direct light too. What it meets of lights themselves, straight or by specular surfaces, is direct
-//! light and caustics of the surface where it starts, and is left out.
+//! volume map; planes are read along all of its way in place of that map. If it passes, it brings what the diffuse surface
+//! behind reflects, from the global map, which holds every class of light there, direct light too. What it meets of lights
+//! themselves, straight or by specular surfaces, is direct light and caustics of the surface where it starts, and is left out.
 
 use super::surface::Diffuse;
 use super::{Mapper, ROULETTE, Report};
