@@ -29,7 +29,7 @@ use crate::integrators::path::{Rays, next_event, seen_straight, uncollided};
 use crate::integrators::{Layer, Layers};
 use crate::light::Light;
 use crate::math::{Positive, Ray};
-use crate::photons::maps::Maps;
+use crate::photons::maps::{Maps, MediumSamples};
 use crate::photons::tree::Radii;
 use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
@@ -196,7 +196,9 @@ impl<'a> Mapper<'a> {
             ));
         }
         let holds_some = volume.is_some() || beams.is_some() || planes.is_some();
-        if holds_some && self.maps.media != self.settings.media() {
+        // Beams know how far they go.
+        let kinds = |media: MediumSamples| (media.beams().is_some(), media.has_planes());
+        if holds_some && kinds(self.maps.media) != kinds(self.settings.media()) {
             return Err(Error::Scene(
                 "the volume map does not hold what is to be read of it: photons, beams, or planes; allowed: what it was filled with".into(),
             ));
