@@ -14,7 +14,7 @@ use turbid::integrators::Layer;
 use turbid::integrators::mapper::Mapper;
 use turbid::memory;
 use turbid::photons::importance::{Importance, ImportanceSettings};
-use turbid::photons::maps::{MapSettings, Maps, fill_counted_by_importance, forecast};
+use turbid::photons::maps::{MapSettings, Maps, MediumSamples, fill_counted_by_importance, forecast};
 use turbid::photons::{Guide, GuideSettings};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Pixel, Streams, check_camera};
@@ -84,11 +84,17 @@ impl Request {
     }
 
     /// The maps of one repetition.
-    fn maps(&self, scene: &Scene, camera: &Camera, streams: Streams, watch: &Watch) -> Result<Maps> {
+    fn maps(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        media: MediumSamples,
+        streams: Streams,
+        watch: &Watch,
+    ) -> Result<Maps> {
         let [global, caustic, volume] = self.readout.amounts;
         let Streams { seed, replicate } = streams;
         let indirect = self.readout.indirect();
-        let media = self.readout.settings(scene)?.media();
         let settings = MapSettings { global, caustic, volume, media, indirect, seed, replicate };
         let learned = ImportanceSettings { seed, replicate, ..Default::default() };
         let learn = || Importance::of(scene, camera, indirect, &learned, watch);
@@ -124,7 +130,7 @@ impl Request {
                 With::Bidirectional => fill(&Method::Bidirectional(scene))?,
                 With::Light => fill(&Method::Light(scene))?,
                 With::Photons => {
-                    let maps = self.maps(scene, camera, streams, watch)?;
+                    let maps = self.maps(scene, camera, settings.media(), streams, watch)?;
                     let settings = match read {
                         Some(settings) => settings,
                         None => *read.insert(self.readout.suited(&settings, maps.stored())?),

@@ -2,7 +2,7 @@
 //! refused, and threads.
 
 use crate::checks::beams::{beam, by_maps};
-use crate::checks::ledger::{Room, layers_are_those_of_the_reference, mirror, reference, settings};
+use crate::checks::ledger::{Room, filling, layers_are_those_of_the_reference, mirror, reference, settings};
 use crate::checks::media::{layered, varying};
 use crate::checks::planes::{
     Laser, a_laser_scattered_twice, a_plane_end_on_counts_in_full, in_planes, one_plane_by_hand, read,
@@ -19,12 +19,13 @@ use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Shape;
-use turbid::integrators::mapper::Settings;
+use turbid::integrators::mapper::{Mapper, Settings};
+use turbid::integrators::path;
 use turbid::light::{Beam, Light, Section};
 use turbid::math::{FOUR_PI, Interval, Positive, Ray, cos, exp, sin, warp};
 use turbid::medium::Medium;
 use turbid::photons::beams::BeamKind;
-use turbid::photons::maps::Indirect;
+use turbid::photons::maps::{Indirect, MapSettings, fill};
 use turbid::photons::planes::{Plane, PlaneMap, PlaneTree};
 use turbid::photons::{Emitter, Histories, Pass, Photon, Run, Storage};
 use turbid::rng::{Purpose, Stream};
@@ -359,6 +360,53 @@ fn a_room_with_a_mirror_and_a_pane_keeps_its_ledger() {
         let read = Settings { volume: usual.volume.along_beams(radius).in_planes(), ..usual };
         layers_are_those_of_the_reference((&scene, &paths), indirect, &read, 4000, seed);
     }
+}
+
+/// A tinted shell within a ball of fog, which light crosses between two scatterings more often than not: each flight that a ray meets is
+/// read once, from planes up to the shell and from beams behind it. Without the beams a good part is missing.
+#[test]
+fn planes_end_at_a_pane_and_beams_begin_there() {
+    let medium = homogeneous(Spectrum::grey(2.0), Spectrum::rgb(0.9, 0.6, 0.8), 0.3);
+    let ball = Region { shape: sphere(DVec3::ZERO, 1.0), medium };
+    let tinted = Surface::Filter(Filter::new(Spectrum::rgb(0.9, 0.7, 0.8)).unwrap());
+    let shell = (sphere(DVec3::ZERO, 0.7), tinted);
+    let light = point_light(DVec3::new(0.5, 2.0, -1.5), Spectrum::ONE);
+    let scene = bounded(vec![ball], vec![shell], vec![light]);
+    // One in each cell of a grid.
+    let ray = |history: u64, stream: &mut Stream| {
+        let ([u, v], [i, j]) = (stream.pair(), [history % 10, history / 10 % 10].map(|cell| cell as f64));
+        let [x, y] = [i + u, j + v].map(|cells| cells / 5.0 - 1.0);
+        Ray::new(DVec3::new(x, y, -3.0), DVec3::Z)
+    };
+    let mut reference = Moments::new();
+    for history in 0..100_000 {
+        let stream = &mut Stream::new(41, Purpose::Paths, 0, history);
+        reference.push(path::layers(&scene, ray(history, stream), None, 0, stream).0.multiple[0]);
+    }
+    let usual = settings(1);
+    let radius = Positive::new("the radius", 0.03).unwrap();
+    let both = Settings { volume: usual.volume.along_beams(radius).in_planes(), ..usual };
+    let alone = Settings { volume: usual.volume.in_planes(), ..usual };
+    let mut measured = [Moments::new(), Moments::new()];
+    for replicate in 0..64 {
+        let filling = MapSettings { media: both.media(), ..filling(1000, Indirect::Seen, 41, replicate) };
+        let maps = fill(&scene, &filling, &NoProgress).unwrap();
+        for (moments, read) in measured.iter_mut().zip([&both, &alone]) {
+            let mapper = Mapper::new(&scene, &maps, read);
+            let seen = (0..200).map(|history| {
+                let stream = &mut Stream::new(41, Purpose::Paths, replicate + 1, history);
+                mapper.radiance(ray(history, stream), None, 0, stream).0.multiple[0]
+            });
+            moments.push(seen.sum::<f64>() / 200.0);
+        }
+    }
+    let expected = reference.mean();
+    let reference = (expected, reference.std_error());
+    // Less than what beams bring, so that light read twice would be found too.
+    let promise = 0.15;
+    verdict::agrees_with_a_tail("planes and beams", &measured[0], reference, promise * expected, 41);
+    verdict::rejects("planes alone", &measured[1], expected, 41);
+    assert!(measured[1].mean() < (1.0 - promise) * expected, "{:?}", measured[1]);
 }
 
 /// One sensor of radiance in a medium.

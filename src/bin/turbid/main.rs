@@ -26,6 +26,7 @@ mod progress;
 mod progressive;
 mod provenance;
 mod quiet;
+mod reading_notes;
 mod render;
 mod revision;
 mod scenes;

@@ -522,12 +522,6 @@ impl Readout {
         self.planes || self.ray_ends == Some(EndsName::Own)
     }
 
-    /// What the volume map holds.
-    pub fn media(&self) -> MediumSamples {
-        let beams = self.beam_radius.map(|_| self.beam_length.map(LengthName::length).unwrap_or_default());
-        MediumSamples::new(beams, self.planes)
-    }
-
     /// Whether steps that depend on what is read are asked for.
     pub fn is_adaptive(&self) -> bool {
         self.adapt.is_some_and(|tolerance| tolerance > 0.0)
@@ -575,7 +569,7 @@ impl Readout {
         settings.volume.ray_k = ray_k(self.ray_k);
         settings.volume.beam_radius = beam_radius(self.beam_radius)?;
         settings.volume.beam_blur = self.beam_blur.map_or(BeamBlur::default(), BlurName::blur);
-        settings.volume.beam_length = self.media().beams().unwrap_or_default();
+        settings.volume.beam_length = self.beam_length.map(LengthName::length).unwrap_or_default();
         settings.volume.has_planes = self.planes;
         let radii = (settings.volume.ray_radius, settings.volume.beam_radius);
         settings.volume.ray_ends = ray_ends(self.ray_ends, radii)?;

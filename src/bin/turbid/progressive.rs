@@ -247,7 +247,7 @@ impl Sequence<'_> {
 
     /// What is found out once: what leads photons, how many are sent out, and the first radii.
     fn shared(&self, stages: &mut Stages) -> anyhow::Result<Shared> {
-        let maps = self.photons.settings(self.readout.indirect(), self.readout.media(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), self.usual.media(), self.seed, 0);
         let importance = stages.time("pilot", || self.photons.importance(self.scene, self.camera, &maps))?;
         let emitted = stages.time("pilot", || {
             let fixed = (self.fixed, 0.0);

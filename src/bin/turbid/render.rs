@@ -21,7 +21,7 @@ use std::ops::AddAssign;
 use std::path::{Path, PathBuf};
 use turbid::integrators::mapper::{Mapper, Report, Settings};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
-use turbid::photons::maps::fill_part;
+use turbid::photons::maps::{MediumSamples, fill_part};
 use turbid::photons::{MOST_HISTORIES, Part};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Blocks, Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, PictureError, Streams};
@@ -263,7 +263,7 @@ impl Render {
                 Ok((self.fill(film, stages, left, &Method::Light(&scene), (&camera, streams))?, None))
             }),
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
-                let (indirect, media) = (self.readout.indirect(), self.readout.media());
+                let (indirect, media) = (self.readout.indirect(), usual.media());
                 let settings_of_maps =
                     self.photons.settings(indirect, media, streams.seed, streams.replicate);
                 let importance =
@@ -428,7 +428,7 @@ impl Render {
         camera: &Camera,
         sequence: &Sequence<'_>,
     ) -> serde_json::Value {
-        let maps = self.photons.settings(self.readout.indirect(), self.readout.media(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), sequence.usual.media(), self.seed, 0);
         serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
             "plan": if self.plan == PlanName::Full { "full" } else { "auto" },
@@ -566,7 +566,8 @@ impl Render {
     /// All that the picture was made from: no path, no time.
     fn provenance(&self, scene_text: &str, made: &Made, exposure: f64) -> anyhow::Result<serde_json::Value> {
         let by_photons = self.with == With::Photons;
-        let maps = self.photons.settings(self.readout.indirect(), self.readout.media(), self.seed, 0);
+        let media = made.first_read.map_or(MediumSamples::Points, |read| read.media());
+        let maps = self.photons.settings(self.readout.indirect(), media, self.seed, 0);
         // Of a progressive picture a run may know some of the maps alone.
         let filled = (!self.progressive.is_asked_for)
             .then(|| made.maps.iter().map(|made| made.filled).collect::<Vec<[Option<Filled>; 3]>>());
