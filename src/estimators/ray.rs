@@ -55,8 +55,8 @@ impl RayEstimator {
     /// `ray` looks away from the receiver, so that light travels against it; `span` in the `medium`, and `boundary` what is about
     /// it; `passed` the part of the light from a distance along the ray \[L\] that reaches the near end. Where it has a closed form
     /// ([`Transmitted::decay`]) photons are summed by rows, in single precision, within some 10^-6, but for those beside bodies that are
-    /// not flat and beside other media; near faces and bodies the part of the disc is then the mean over a stretch of an eighth of
-    /// the radius. One by one beside anything where the stretch is longer than 128 radii, and everywhere where the radius is below
+    /// not flat and beside other media; near faces and bodies the part of the disc is then the mean over a stretch of a quarter of
+    /// the radius. One by one beside anything where the stretch is longer than 256 radii, and everywhere where the radius is below
     /// 10^-3 of the map or the map is thicker than some 16 mean free paths
     ///
     /// # Returns

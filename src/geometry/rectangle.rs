@@ -129,6 +129,18 @@ impl Rectangle {
         between(self.u)?.intersection(between(self.v)?)?.intersection(in_front)?.intersection(ahead)
     }
 
+    /// The part of a ray, and what is behind its origin, in the box that reaches so far \[L\] beyond the rectangle to all sides.
+    pub(crate) fn beside(&self, ray: &Ray, reach: f64) -> Option<Interval> {
+        let from = ray.origin - self.corner;
+        let between = |axis: DVec3, length: f64| {
+            let (at_0, slope) = (from.dot(axis), ray.dir.dot(axis));
+            let beyond = Interval::of_positive(length + reach - at_0, -slope);
+            Interval::of_positive(at_0 + reach, slope).intersection(beyond)
+        };
+        let along = |edge: DVec3| between(edge.normalize(), edge.length());
+        along(self.u)?.intersection(along(self.v)?)?.intersection(between(self.normal, 0.0)?)
+    }
+
     /// Where a point lies along the edges, each of length 1, seen along the normal.
     fn coordinates(&self, p: DVec3) -> DVec2 {
         let p = p - self.corner;

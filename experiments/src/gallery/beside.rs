@@ -69,7 +69,7 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
     let lines = picture
         .lines
         .iter()
-        .flat_map(|lines| Stored::ALL.map(|stored| (lines, stored)))
+        .flat_map(|lines| Stored::of(lines).map(move |stored| (lines, stored)))
         .map(|of| Ok((of.1, large.lines(of, &ours.facts)?)))
         .collect::<anyhow::Result<Vec<(Stored, CachedRender)>>>()?;
     // Before anything that is compared is made.

@@ -1,5 +1,5 @@
-//! The same picture with the volume map read along whole rays, from points and from beams: maps one after the other, each of its own
-//! photons, with radii that shrink, until as much time has passed as the picture of 1998 took.
+//! The same picture with the volume map read along whole rays, from points, from beams, and from planes beside beams: maps one after the
+//! other, each of its own photons, with radii that shrink, until as much time has passed as the picture of 1998 took.
 
 use super::keep::{CachedRender, FORMAT, RenderRecord};
 use super::pictures::{Lines, Picture};
@@ -20,17 +20,26 @@ pub enum Stored {
     Points,
     /// Flights.
     Beams,
+    /// Pairs of flights, and flights that begin on bodies.
+    Planes,
 }
 
 impl Stored {
-    /// Both.
-    pub const ALL: [Stored; 2] = [Stored::Points, Stored::Beams];
+    /// All of them.
+    pub const ALL: [Stored; 3] = [Stored::Points, Stored::Beams, Stored::Planes];
+
+    /// Those that are asked for, in this order.
+    pub fn of(lines: &Lines) -> impl Iterator<Item = Stored> {
+        let has_planes = lines.planes.is_some();
+        Self::ALL.into_iter().filter(move |stored| *stored != Stored::Planes || has_planes)
+    }
 
     /// Their name on the page.
     pub fn name(self) -> &'static str {
         match self {
             Stored::Points => "points along rays",
             Stored::Beams => "photon beams",
+            Stored::Planes => "photon planes beside beams",
         }
     }
 
@@ -39,6 +48,7 @@ impl Stored {
         match self {
             Stored::Points => "rays",
             Stored::Beams => "beams",
+            Stored::Planes => "planes",
         }
     }
 
@@ -47,13 +57,16 @@ impl Stored {
         match self {
             Stored::Points => 3000,
             Stored::Beams => 3_000_000,
+            Stored::Planes => 6_000_000,
         }
     }
 
-    fn of(self, lines: &Lines) -> (Amount, f64) {
+    /// How much of it each map takes, and the radius in the first one \[L\].
+    fn asked(self, lines: &Lines) -> (Amount, f64) {
         match self {
             Stored::Points => lines.points,
             Stored::Beams => lines.beams,
+            Stored::Planes => lines.planes.unwrap_or(lines.beams),
         }
     }
 }
@@ -71,7 +84,7 @@ fn settings(
         Amount::Emitted(n) => Amount::Emitted(n.div_ceil(lines.parts)),
         Amount::Stored(n) => Amount::Stored(n.div_ceil(lines.parts)),
     };
-    let (volume, radius) = stored.of(lines);
+    let (volume, radius) = stored.asked(lines);
     let (global, caustic) = (part(usual.global), part(usual.caustic));
     let mut read = recipe::readout(picture, 1)?;
     let gathers = [&mut read.global.1, &mut read.caustic.1, &mut read.volume.gather];
@@ -84,6 +97,7 @@ fn settings(
     read.volume = match stored {
         Stored::Points => read.volume.along_rays(radius),
         Stored::Beams => read.volume.along_beams(radius),
+        Stored::Planes => read.volume.along_beams(radius).in_planes(),
     };
     read.volume = read.volume.progressive();
     let maps = MapSettings { global, caustic, volume, media: read.media(), ..usual };
@@ -156,12 +170,12 @@ mod tests {
         let with_lines: Vec<_> = ALL.iter().filter_map(|p| Some((p, p.lines?))).collect();
         assert!(with_lines.len() > 1);
         for (picture, lines) in with_lines {
-            for stored in Stored::ALL {
+            for stored in Stored::of(&lines) {
                 let of = |map| settings(picture, (&lines, stored), [0.1, 0.0, 0.2], 1, map).unwrap();
                 let ((maps, first), (others, later)) = (of(0), of(5));
                 assert_eq!(
-                    (maps.media.beams().is_some(), maps.replicate + 5),
-                    (stored == Stored::Beams, others.replicate)
+                    (maps.media.beams().is_some(), maps.media.has_planes(), maps.replicate + 5),
+                    (stored != Stored::Points, stored == Stored::Planes, others.replicate)
                 );
                 let radius =
                     |s: &mapper::Settings| s.volume.ray_radius.or(s.volume.beam_radius).unwrap().get();

@@ -86,10 +86,11 @@ for (const box of document.querySelectorAll('.compare')) {
 const LARGE: f64 = 720.0;
 
 /// The renders of a picture that are compared by eye: the kind of its plate, and its button.
-const RENDERS: [(&str, &str); 5] = [
+const RENDERS: [(&str, &str); 6] = [
     ("photons", "Photon map"),
     ("rays", "Along rays, equal time"),
     ("beams", "Beams, equal time"),
+    ("planes", "Planes, equal time"),
     ("rival", "Rival, equal time"),
     ("reference", "Reference"),
 ];
@@ -154,7 +155,8 @@ fn method(settings: &Settings) -> Markup {
             "Of some pictures the light in the medium was read along whole rays as well, from points within a radius of the ray and from "
             "photons' flights, stored as beams: in the same CPU time as the picture of 1998 took, as the mean over maps one after the other, "
             "each of its own photons, with radii that shrink. Light that comes straight from a lamp and is scattered once is found by shadow "
-            "rays there too. The cognac only absorbs: there is nothing along its rays to be read."
+            "rays there too. In the grey fog what media scatter twice and more comes from planes as well, which pairs of flights span, "
+            "without blur; light from the walls comes by beams there. The cognac only absorbs: there is nothing along its rays to be read."
         }
         p.soft {
             "How the verdict is found: what blur and edges do to each pixel is predicted from two other replicates, with up to 8 times as "

@@ -22,6 +22,8 @@ pub struct Lines {
     pub points: (Amount, f64),
     /// Beams in the medium, and that radius.
     pub beams: (Amount, f64),
+    /// Planes and beams in the medium, and the radius of the beams: of a medium that is grey and the same everywhere, without glass.
+    pub planes: Option<(Amount, f64)>,
 }
 
 /// One picture of the gallery.
@@ -157,6 +159,7 @@ pub const ALL: &[Picture] = &[
             parts: 1,
             points: (Amount::Stored(65_000), 0.1),
             beams: (Amount::Stored(5000), 0.1),
+            planes: Some((Amount::Stored(5000), 0.1)),
         }),
     },
     Picture {
@@ -228,6 +231,7 @@ pub const ALL: &[Picture] = &[
             parts: 1,
             points: (Amount::Stored(80_000), 0.15),
             beams: (Amount::Stored(5000), 0.1),
+            planes: None,
         }),
     },
     Picture {
@@ -256,6 +260,7 @@ pub const ALL: &[Picture] = &[
             parts: 4,
             points: (Amount::Stored(300_000), 0.03),
             beams: (Amount::Stored(30_000), 0.03),
+            planes: None,
         }),
     },
     Picture {

@@ -1,7 +1,7 @@
 //! What comes near a stretch of a ray: looked for once, and asked at every place of it.
 
 use super::Boundary;
-use super::sheets::{ALONG, Sheets, lines_of_faces, rectangles_of};
+use super::sheets::{ALONG, FaceLine, Sheets, rectangles_of};
 use super::visible::{DiscShare, Surroundings};
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_before;
@@ -25,8 +25,9 @@ pub(in crate::estimators) struct Beside<'a> {
     ray: &'a Ray,
     bodies: Vec<(Interval, &'a Shape)>,
     later: Vec<(Interval, &'a Shape)>,
-    /// The medium's faces as the ray's origin has them, where they are planes; directions across the ray beside.
+    /// The medium's faces as the ray's origin has them, where they are planes; the same on discs.
     faces: Option<Vec<Front>>,
+    lines: Vec<FaceLine>,
     axes: Frame,
 }
 
@@ -45,7 +46,9 @@ impl<'a> Beside<'a> {
         };
         let bodies = boundary.bodies.iter().filter_map(near).filter(|(_, body)| !is_in_face(body)).collect();
         let later = boundary.later.iter().filter_map(near).collect();
-        Beside { boundary, ray, bodies, later, faces, axes: Frame::new(ray.dir) }
+        let axes = Frame::new(ray.dir);
+        let lines = faces.iter().flatten().filter_map(|face| FaceLine::new(face, &axes)).collect();
+        Beside { boundary, ray, bodies, later, faces, lines, axes }
     }
 
     /// The part of the disc of a radius across the ray on which photons are kept, of one found `seen` \[L\] from its middle at a distance along
@@ -60,12 +63,12 @@ impl<'a> Beside<'a> {
     ) -> Option<DiscShare> {
         let of_disc = |about: &Surroundings<'_>| about.disc_share(kernel, self.ray.dir, radius, salt);
         match &self.faces {
-            Some(faces) if is_clipped && is_owned && self.is_far(along) => {
+            Some(_) if is_clipped && is_owned && self.is_far(along) => {
                 if self.is_whole(along, radius) {
                     return Some(DiscShare::WHOLE);
                 }
                 let (mut lines, mut count) = ([(DVec2::ZERO, 0.0); FACES], 0);
-                for line in lines_of_faces(faces, &self.axes, along, radius) {
+                for line in self.lines.iter().filter_map(|face| face.on_disc(along, radius)) {
                     lines[count] = line;
                     count += 1;
                 }
@@ -148,19 +151,14 @@ impl<'a> Beside<'a> {
 
     /// What parts discs in [`Beside::flat_parts`], as the ray has it; none where the medium's faces are not planes.
     pub(super) fn sheets(&self) -> Option<Sheets> {
-        let faces = match (self.boundary.medium, &self.faces) {
-            (Some(_), None) => return None,
-            (_, faces) => faces.clone().unwrap_or_default(),
-        };
-        Some(Sheets::new(self.ray, self.rectangles().map(|(_, rectangle)| rectangle), faces))
+        let is_bounded_by_planes = self.boundary.medium.is_none() || self.faces.is_some();
+        let rectangles = self.flat_bodies().flat_map(|(_, rectangles)| rectangles);
+        is_bounded_by_planes.then(|| Sheets::new((self.ray, &self.axes), rectangles, self.lines.clone()))
     }
 
-    /// The rectangles of flat bodies, each with the part of the line where it may be near.
-    pub fn rectangles(&self) -> impl Iterator<Item = (Interval, Rectangle)> {
-        self.bodies.iter().flat_map(|(part, body)| {
-            let rectangles = rectangles_of(body).unwrap_or_default();
-            rectangles.into_iter().map(|rectangle| (*part, rectangle))
-        })
+    /// The rectangles of flat bodies, with the part of the line where each body may be near.
+    pub fn flat_bodies(&self) -> impl Iterator<Item = (Interval, Vec<Rectangle>)> {
+        self.bodies.iter().filter_map(|(part, body)| Some((*part, rectangles_of(body)?)))
     }
 
     /// Whether everything within a radius of the place at a distance along the ray is of the medium and seen, as far as boxes tell.
@@ -211,14 +209,20 @@ fn holds(part: &Interval, along: f64) -> bool {
     part.start <= along && along <= part.end
 }
 
-/// The part of a ray's line in which it may be nearer to a shape than `reach` \[L\]: that in a box about it, with room for rounding.
+/// The part of a ray's line in which it may be nearer to a shape than `reach` \[L\]: that in a box about it, a rectangle's along its edges, with
+/// room for rounding.
 fn about(shape: &Shape, ray: &Ray, reach: f64) -> Option<Interval> {
     const ALL: Interval = Interval { start: 0.0, end: f64::INFINITY };
     let Some((min, max)) = shape.corners() else { return Some(ALL) };
     let room = DVec3::splat(reach) + 1e-9 * (min.abs().max(max.abs()) + ray.origin.abs());
-    // Boxes that are not finite hold everything.
-    let Ok(cuboid) = Cuboid::new(min - room, max + room) else { return Some(ALL) };
-    let inside = Shape::Cuboid(cuboid).interval(ray)?;
+    let inside = match shape {
+        Shape::Rectangle(rectangle) => rectangle.beside(ray, room.max_element())?,
+        _ => {
+            // Boxes that are not finite hold everything.
+            let Ok(cuboid) = Cuboid::new(min - room, max + room) else { return Some(ALL) };
+            Shape::Cuboid(cuboid).interval(ray)?
+        }
+    };
     let margin = 1e-9 * (inside.end - inside.start);
     Some(Interval { start: inside.start - margin, end: inside.end + margin })
 }

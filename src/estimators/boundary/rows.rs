@@ -12,13 +12,17 @@ use glam::DVec3;
 use wide::f32x8;
 
 /// A share is the mean over a stretch of this part of the radius, by which a uniform source is right however the share changes in it.
-const STRETCH: f64 = 0.125;
+const STRETCH: f64 = 0.25;
 
 /// Of shares that differ by less than this part at the ends of a stretch, or in the middle from what the ends say, no more are asked.
 const EVEN: f64 = 0.03;
 
 /// Of others so many, evenly spread.
-const PLACES: usize = 8;
+const PLACES: usize = 4;
+
+/// So many stretches are told of by the shares at their ends alone, where the parabola through the first, the middle and the last of these is
+/// off by less than that part at the others.
+const TOGETHER: usize = 4;
 
 /// Stretches that a ray is parted in at least, where discs are larger than what they are in.
 const LEAST: f64 = 32.0;
@@ -40,7 +44,7 @@ pub(in crate::estimators) struct BesideRows<'a> {
     clear: Vec<[f32; 2]>,
     origin: [f32; 3],
     dir: [f32; 3],
-    occluders: Vec<Occluder>,
+    bodies: Vec<FlatBody>,
     shares: Option<Shares<'a>>,
 }
 
@@ -65,14 +69,16 @@ impl<'a> BesideRows<'a> {
             parts: clear,
             origin: place.as_vec3().to_array(),
             dir: ray.dir.as_vec3().to_array(),
-            occluders: Vec::new(),
+            bodies: Vec::new(),
             shares: None,
         };
         if let Some((parts, count, all)) = walled {
-            let occluder = |(part, rectangle): (Interval, Rectangle)| {
-                Occluder::new(&rectangle, (tree, place, ray.dir), feet(&part))
+            let occluder = |rectangle: Rectangle| Occluder::new(&rectangle, (tree, place, ray.dir));
+            let flat = |(part, rectangles): (Interval, Vec<Rectangle>)| FlatBody {
+                beside: feet(&part),
+                sides: rectangles.into_iter().map(occluder).collect(),
             };
-            of.occluders = beside.rectangles().map(occluder).collect();
+            of.bodies = beside.flat_bodies().map(flat).collect();
             of.parts = parts;
             of.shares =
                 is_clipped.then(|| Shares::new(beside, (unit, middle, all), (kernel, radius, salt), count));
@@ -111,20 +117,27 @@ impl<'a> BesideRows<'a> {
     /// Which photons of a row are hidden from their feet.
     #[inline(always)]
     fn hidden(&self, row: &Neighbors<'_>, feet: f32x8) -> f32x8 {
-        if self.occluders.is_empty() {
-            return f32x8::ZERO;
-        }
         let positions = row.positions();
-        let away: [f32x8; 3] = std::array::from_fn(|i| {
-            positions[i] - f32x8::splat(self.origin[i]) - feet * f32x8::splat(self.dir[i])
-        });
-        let hidden = |one: &Occluder| {
-            let [start, end] = one.beside;
-            let near = row.inside() & feet.simd_ge(f32x8::splat(start)) & feet.simd_le(f32x8::splat(end));
-            if near.any() { near & one.is_between(feet, &away) } else { f32x8::ZERO }
+        let hidden = |FlatBody { beside: [start, end], sides }: &FlatBody| {
+            let near = row.inside() & feet.simd_ge(f32x8::splat(*start)) & feet.simd_le(f32x8::splat(*end));
+            if !near.any() {
+                return f32x8::ZERO;
+            }
+            let away: [f32x8; 3] = std::array::from_fn(|i| {
+                positions[i] - f32x8::splat(self.origin[i]) - feet * f32x8::splat(self.dir[i])
+            });
+            let is_between = |all, side: &Occluder| all | side.is_between(feet, &away);
+            near & sides.iter().fold(f32x8::ZERO, is_between)
         };
-        self.occluders.iter().map(hidden).fold(f32x8::ZERO, |all, one| all | one)
+        self.bodies.iter().map(hidden).fold(f32x8::ZERO, |all, one| all | one)
     }
+}
+
+/// A body of rectangles beside the ray.
+struct FlatBody {
+    /// Feet whose photons it may hide.
+    beside: [f32; 2],
+    sides: Vec<Occluder>,
 }
 
 /// An axis, and how much farther along it each unit along the ray is.
@@ -153,8 +166,6 @@ impl Axis {
 
 /// A rectangle beside the ray.
 struct Occluder {
-    /// Feet whose photons it may hide.
-    beside: [f32; 2],
     normal: Axis,
     /// How far before it the foot 0 is.
     height: f32,
@@ -163,7 +174,7 @@ struct Occluder {
 }
 
 impl Occluder {
-    fn new(rectangle: &Rectangle, (tree, place, dir): (&PhotonTree, DVec3, DVec3), beside: [f32; 2]) -> Self {
+    fn new(rectangle: &Rectangle, (tree, place, dir): (&PhotonTree, DVec3, DVec3)) -> Self {
         let corner = tree.relative(rectangle.corner()) - place;
         let edge = |edge: DVec3| {
             let length = edge.length();
@@ -171,7 +182,6 @@ impl Occluder {
             (Axis::new(edge / length, dir), [start, start + length / tree.unit()].map(|end| end as f32))
         };
         Occluder {
-            beside,
             normal: Axis::new(rectangle.normal(), dir),
             height: -corner.dot(rectangle.normal()) as f32,
             edges: [edge(rectangle.u()), edge(rectangle.v())],
@@ -272,22 +282,48 @@ impl<'a> Shares<'a> {
 
     #[cold]
     fn ask(&mut self, stretch: usize) {
-        if self.known[stretch] == 0.0 {
-            let DiscShare { part, is_sampled } = self.mean_of(stretch);
-            let part = part.max(DiscShare::LEAST) as f32;
-            self.known[stretch] = if is_sampled { -part } else { part };
+        if self.known[stretch] != 0.0 {
+            return;
         }
+        if self.ask_together(stretch / TOGETHER * TOGETHER) {
+            return;
+        }
+        let DiscShare { part, is_sampled } = self.mean_of(stretch);
+        let part = part.max(DiscShare::LEAST) as f32;
+        self.known[stretch] = if is_sampled { -part } else { part };
+    }
+
+    /// The mean shares over [`TOGETHER`] stretches from this one on, by a parabola over either half; false where shares are not even enough.
+    fn ask_together(&mut self, first: usize) -> bool {
+        if self.sheets.is_none() || first + TOGETHER > self.known.len() {
+            return false;
+        }
+        let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|n| self.at_end(first + n).part);
+        let off = |told: f64, near: f64, far: f64| (0.375 * near + 0.75 * c - 0.125 * far - told).abs();
+        let is_even = off(b, a, e).max(off(d, e, a)) <= EVEN * a.max(c).max(e);
+        if is_even {
+            // The mean from the first to the middle of three equally far places.
+            let mean = |near: f64, middle: f64, far: f64| (5.0 * near + 8.0 * middle - far) / 12.0;
+            let parts = [mean(a, b, c), mean(c, b, a), mean(c, d, e), mean(e, d, c)];
+            for (known, part) in self.known[first..].iter_mut().zip(parts) {
+                *known = part.max(DiscShare::LEAST) as f32;
+            }
+        }
+        is_even
+    }
+
+    /// The share at the end of so many stretches.
+    fn at_end(&mut self, end: usize) -> DiscShare {
+        self.at_ends[end].unwrap_or_else(|| {
+            let share = self.share_at(end as f64);
+            self.at_ends[end] = Some(share);
+            share
+        })
     }
 
     /// The mean share over a stretch.
     fn mean_of(&mut self, stretch: usize) -> DiscShare {
-        let [start, end] = [stretch, stretch + 1].map(|end| {
-            self.at_ends[end].unwrap_or_else(|| {
-                let share = self.share_at(end as f64);
-                self.at_ends[end] = Some(share);
-                share
-            })
-        });
+        let [start, end] = [stretch, stretch + 1].map(|end| self.at_end(end));
         let told = |shares: &[DiscShare], weights: &[f64]| {
             let part = shares.iter().zip(weights).map(|(share, weight)| share.part * weight).sum::<f64>();
             let is_sampled = shares.iter().any(|share| share.is_sampled);

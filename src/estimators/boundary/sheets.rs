@@ -21,21 +21,33 @@ pub(super) fn rectangles_of(shape: &Shape) -> Option<Vec<Rectangle>> {
     }
 }
 
-/// The lines in which faces, as the beginning of a ray along `axes.z` has them, cut the disc of a radius at a distance along it: unit vectors
-/// towards them and their distances over the radius. None of faces beyond the disc, and of those along it, behind which rounding may put its
-/// centre.
-pub(super) fn lines_of_faces(
-    faces: &[Front],
-    axes: &Frame,
-    along: f64,
-    radius: f64,
-) -> impl Iterator<Item = (DVec2, f64)> {
-    faces.iter().filter_map(move |face| {
+/// The lines in which a face cuts the discs across a ray, as the ray's origin has it.
+#[derive(Clone, Copy)]
+pub(super) struct FaceLine {
+    /// Unit vector across the ray.
+    towards: DVec2,
+    /// Sine of the angle between discs and face.
+    sine: f64,
+    /// Height of the ray's origin above the face, and how much that of places along the ray rises.
+    height: f64,
+    rise: f64,
+}
+
+impl FaceLine {
+    /// As the beginning of a ray along `axes.z` has it; none of a face along the discs, behind which rounding may put their centre.
+    pub fn new(face: &Front, axes: &Frame) -> Option<Self> {
         let across = -DVec2::new(face.normal.dot(axes.x), face.normal.dot(axes.y));
         let sine = across.length();
-        let away = face.height(axes.z * along).max(0.0) / (radius * sine);
-        (sine > ALONG && away < 1.0).then(|| (across / sine, away))
-    })
+        let (height, rise) = (face.distance, face.normal.dot(axes.z));
+        (sine > ALONG).then(|| FaceLine { towards: across / sine, sine, height, rise })
+    }
+
+    /// The line on the disc of a radius at a distance along the ray: a unit vector towards it and its distance over the radius. None if it is
+    /// beyond the disc.
+    pub fn on_disc(&self, along: f64, radius: f64) -> Option<(DVec2, f64)> {
+        let away = (self.height + self.rise * along).max(0.0) / (radius * self.sine);
+        (away < 1.0).then_some((self.towards, away))
+    }
 }
 
 /// A rectangle as a ray has it: how far along the ray its corner is and how far across it, and its edges the same.
@@ -70,28 +82,29 @@ impl Sheet {
 
 /// The flat bodies about a ray, and the faces of its medium, which are planes.
 pub(super) struct Sheets {
-    axes: Frame,
     sheets: Vec<Sheet>,
-    /// As the ray's origin has them.
-    faces: Vec<Front>,
+    faces: Vec<FaceLine>,
 }
 
 impl Sheets {
-    /// About a ray.
-    pub fn new(ray: &Ray, rectangles: impl Iterator<Item = Rectangle>, faces: Vec<Front>) -> Self {
-        let axes = Frame::new(ray.dir);
+    /// About a ray along `axes.z`.
+    pub fn new(
+        (ray, axes): (&Ray, &Frame),
+        rectangles: impl Iterator<Item = Rectangle>,
+        faces: Vec<FaceLine>,
+    ) -> Self {
         let told = |way: DVec3| (way.dot(axes.z), DVec2::new(way.dot(axes.x), way.dot(axes.y)));
         let sheet = |rectangle: Rectangle| Sheet {
             corner: told(rectangle.corner() - ray.origin),
             u: told(rectangle.u()),
             v: told(rectangle.v()),
         };
-        Sheets { axes, sheets: rectangles.map(sheet).collect(), faces }
+        Sheets { sheets: rectangles.map(sheet).collect(), faces }
     }
 
     /// The part of the disc of a radius at a distance along the ray \[L\] that is in the medium and seen from its middle.
     pub fn share(&self, kernel: Kernel, along: f64, radius: f64) -> f64 {
-        let mut lines: Vec<(DVec2, f64)> = lines_of_faces(&self.faces, &self.axes, along, radius).collect();
+        let mut lines: Vec<_> = self.faces.iter().filter_map(|face| face.on_disc(along, radius)).collect();
         let mut segments: Vec<[DVec2; 2]> = Vec::new();
         for [a, b] in self.sheets.iter().filter_map(|sheet| sheet.segment(along)) {
             let (a, b) = (a / radius, b / radius);
@@ -154,10 +167,11 @@ mod tests {
             let dir = if trial % 7 == 0 { DVec3::X } else { warp::square_to_sphere(stream.pair()) };
             let (along, radius) = (3.0 * stream.unit(), 0.05 + 0.6 * stream.unit());
             let ray = Ray::new(place - dir * along, dir);
-            let faces = cuboid.faces_about(ray.origin).unwrap();
-            let sheets = Sheets::new(&ray, rectangles.iter().copied(), faces);
-            let found = sheets.share(kernel, along, radius);
             let axes = Frame::new(dir);
+            let faces = cuboid.faces_about(ray.origin).unwrap();
+            let faces = faces.iter().filter_map(|face| FaceLine::new(face, &axes)).collect();
+            let sheets = Sheets::new((&ray, &axes), rectangles.iter().copied(), faces);
+            let found = sheets.share(kernel, along, radius);
             let reach = |angle: f64| {
                 let (sin, cos) = sin_cos(angle);
                 let way = Ray::new(place, axes.x * cos + axes.y * sin);
@@ -196,7 +210,11 @@ mod tests {
             let plates = [plate(-below), plate(gap - below)];
             let ray = Ray::new(-z, z);
             let share = |rectangles: &[Rectangle]| {
-                Sheets::new(&ray, rectangles.iter().copied(), Vec::new()).share(Kernel::Uniform, 1.0, 1.0)
+                Sheets::new((&ray, &Frame::new(z)), rectangles.iter().copied(), Vec::new()).share(
+                    Kernel::Uniform,
+                    1.0,
+                    1.0,
+                )
             };
             // What the disc's curve takes away is of the third power.
             for (found, expected) in

@@ -5,7 +5,7 @@
 //! ball, nothing is.
 
 use super::moments::LEAST_OF_ALL;
-use super::sheets::{Sheets, rectangles_of};
+use super::sheets::{FaceLine, Sheets, rectangles_of};
 use super::surfaces::Boundary;
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_in_circle;
@@ -286,11 +286,12 @@ impl<'a> Surroundings<'a> {
             let away = (way - axis * height).length().min(circle * INSIDE);
             return DiscShare::exact(share_in_circle(kernel, circle / radius, away / radius));
         }
+        let axes = Frame::new(axis);
         if let Some((planes, rectangles)) = self.flat(radius) {
-            let sheets = Sheets::new(&Ray::new(self.eye, axis), rectangles.into_iter(), planes);
+            let lines = planes.iter().filter_map(|face| FaceLine::new(face, &axes)).collect();
+            let sheets = Sheets::new((&Ray::new(self.eye, axis), &axes), rectangles.into_iter(), lines);
             return DiscShare::exact(sheets.share(kernel, 0.0, radius));
         }
-        let axes = Frame::new(axis);
         let (sin, cos) = sin_cos(TAU * stream_of(self.eye, salt).unit() / f64::from(ACROSS));
         let (x, y) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
         let one = |to: &DVec2| self.along(&|u| kernel.within_disc(u), x * to.x + y * to.y, radius);

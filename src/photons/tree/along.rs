@@ -18,7 +18,7 @@ impl PhotonTree {
     pub fn along(&self, ray: &Ray, span: Interval, radius: f64, visit: impl FnMut(usize, f64, f64)) {
         let mut ask = self.asked((ray, span, radius), visit);
         match Cylinder::new(&self.units, ray, span, radius) {
-            Some(cylinder) => self.about(&cylinder, |first, _, near| {
+            Some(cylinder) => self.about(&cylinder, |first, _, _, near| {
                 bits(near.to_bitmask()).for_each(|lane| ask(first + lane));
             }),
             None => (0..self.stored).for_each(ask),
@@ -43,8 +43,7 @@ impl PhotonTree {
         let parts: Vec<[f32x8; 2]> = parts.iter().map(|part| cylinder.stretch(&self.units, part)).collect();
         let squared_radius = self.units.shrink(radius) * self.units.shrink(radius);
         let (r2, inverse_r2) = (f32x8::splat(squared_radius as f32), (1.0 / squared_radius) as f32);
-        self.about(&cylinder, |first, squared, near| {
-            let feet = cylinder.feet(&self.positions[first / (2 * ROW)][first / ROW % 2]);
+        self.about(&cylinder, |first, squared, feet, near| {
             let is_in = |[start, end]: &[f32x8; 2]| feet.simd_ge(*start) & feet.simd_lt(*end);
             let in_parts = parts.iter().map(is_in).fold(f32x8::ZERO, |all, part| all | part);
             let inside = in_parts & squared.simd_le(r2);
@@ -82,16 +81,18 @@ impl PhotonTree {
         }
     }
 
-    /// Visits the rows of photons whose boxes a cylinder touches: the place of the first, squared distances \[units^2\], and which of them
-    /// may be within the radius, rounding allowed for.
+    /// Visits the rows of photons whose boxes a cylinder touches: the place of the first, squared distances \[units^2\], feet, and which of
+    /// them may be within the radius with their feet in the span, rounding allowed for.
     #[inline(always)]
-    fn about(&self, cylinder: &Cylinder, mut visit: impl FnMut(usize, f32x8, f32x8)) {
+    fn about(&self, cylinder: &Cylinder, mut visit: impl FnMut(usize, f32x8, f32x8, f32x8)) {
         let r2 = cylinder.squared_radius();
         with_scratch(|scratch| {
             self.descend(|boxes| cylinder.touched(boxes), scratch);
             scratch.measure(self, |positions| cylinder.squared_distances(positions), r2);
             for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
-                visit(row as usize * ROW, squared, squared.simd_le(f32x8::splat(r2)));
+                let feet = cylinder.feet(&self.positions[row as usize / 2][row as usize % 2]);
+                let near = squared.simd_le(f32x8::splat(r2)) & cylinder.holds(feet);
+                visit(row as usize * ROW, squared, feet, near);
             }
         });
     }

@@ -159,6 +159,12 @@ impl Cylinder {
         dot(&self.way(positions), &self.dir())
     }
 
+    /// Which feet may be in the span, rounding allowed for.
+    #[inline(always)]
+    pub(super) fn holds(&self, feet: f32x8) -> f32x8 {
+        feet.simd_ge(f32x8::splat(self.span[0])) & feet.simd_le(f32x8::splat(self.span[1]))
+    }
+
     /// Squared distances of eight positions from the ray.
     #[inline(always)]
     pub(super) fn squared_distances(&self, positions: &Row) -> f32x8 {
