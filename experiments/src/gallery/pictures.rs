@@ -159,7 +159,8 @@ pub const ALL: &[Picture] = &[
             parts: 1,
             points: (Amount::Stored(65_000), 0.1),
             beams: (Amount::Stored(5000), 0.1),
-            planes: Some((Amount::Stored(5000), 0.1)),
+            // Fewer, since rays of the final gathering read them all along their way.
+            planes: Some((Amount::Stored(1000), 0.1)),
         }),
     },
     Picture {

@@ -302,10 +302,7 @@ impl<'a> Shares<'a> {
         let off = |told: f64, near: f64, far: f64| (0.375 * near + 0.75 * c - 0.125 * far - told).abs();
         let is_even = off(b, a, e).max(off(d, e, a)) <= EVEN * a.max(c).max(e);
         if is_even {
-            // The mean from the first to the middle of three equally far places.
-            let mean = |near: f64, middle: f64, far: f64| (5.0 * near + 8.0 * middle - far) / 12.0;
-            let parts = [mean(a, b, c), mean(c, b, a), mean(c, d, e), mean(e, d, c)];
-            for (known, part) in self.known[first..].iter_mut().zip(parts) {
+            for (known, part) in self.known[first..].iter_mut().zip(means_between([a, b, c, d, e])) {
                 *known = part.max(DiscShare::LEAST) as f32;
             }
         }
@@ -356,6 +353,12 @@ impl<'a> Shares<'a> {
     }
 }
 
+/// The means between five equally far places of what is a parabola through the first three, and another one through the last three.
+fn means_between([a, b, c, d, e]: [f64; 5]) -> [f64; TOGETHER] {
+    let mean = |near: f64, middle: f64, far: f64| (5.0 * near + 8.0 * middle - far) / 12.0;
+    [mean(a, b, c), mean(c, b, a), mean(c, d, e), mean(e, d, c)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -366,6 +369,19 @@ mod tests {
     use crate::rng::{Purpose, Stream};
     use crate::stats::Moments;
     use glam::Vec3;
+
+    #[test]
+    fn means_between_places_are_those_of_parabolas() {
+        let mut stream = Stream::new(14, Purpose::Synthetic, 0, 0);
+        for _ in 0..100 {
+            let [p, q, r] = stream.triple().map(|u| 2.0 * u - 1.0);
+            let means = means_between([0.0, 1.0, 2.0, 3.0, 4.0].map(|x| p + q * x + r * x * x));
+            for (x, mean) in [0.0, 1.0, 2.0, 3.0].into_iter().zip(means) {
+                let expected = p + q * (x + 0.5) + r * (x * x + x + 1.0 / 3.0);
+                assert!((mean - expected).abs() < 1e-13, "{mean} {expected}");
+            }
+        }
+    }
 
     /// A uniform source along rays through a box and a ball, alone and with sheets in them, in all directions and nearly along normals, where
     /// shares change within a part of a stretch: each place counts by the part of its disc that is seen, over the share of its stretch. One
