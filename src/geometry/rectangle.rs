@@ -120,9 +120,7 @@ impl Rectangle {
     pub(crate) fn above(&self, ray: &Ray) -> Option<Interval> {
         let from = ray.origin - self.corner;
         let between = |edge: DVec3| {
-            let (at_0, slope) = (from.dot(edge), ray.dir.dot(edge));
-            let beyond = Interval::of_positive(edge.length_squared() - at_0, -slope);
-            Interval::of_positive(at_0, slope).intersection(beyond)
+            Interval::of_between(from.dot(edge), ray.dir.dot(edge), [0.0, edge.length_squared()])
         };
         let in_front = Interval::of_positive(from.dot(self.normal), ray.dir.dot(self.normal));
         let ahead = Interval { start: 0.0, end: f64::INFINITY };
@@ -133,9 +131,7 @@ impl Rectangle {
     pub(crate) fn beside(&self, ray: &Ray, reach: f64) -> Option<Interval> {
         let from = ray.origin - self.corner;
         let between = |axis: DVec3, length: f64| {
-            let (at_0, slope) = (from.dot(axis), ray.dir.dot(axis));
-            let beyond = Interval::of_positive(length + reach - at_0, -slope);
-            Interval::of_positive(at_0 + reach, slope).intersection(beyond)
+            Interval::of_between(from.dot(axis), ray.dir.dot(axis), [-reach, length + reach])
         };
         let along = |edge: DVec3| between(edge.normalize(), edge.length());
         along(self.u)?.intersection(along(self.v)?)?.intersection(between(self.normal, 0.0)?)

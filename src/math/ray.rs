@@ -45,6 +45,11 @@ impl Interval {
         }
     }
 
+    /// Where `at_0 + slope t` is between two values, if that has a length.
+    pub fn of_between(at_0: f64, slope: f64, [low, high]: [f64; 2]) -> Option<Self> {
+        Self::of_positive(at_0 - low, slope).intersection(Self::of_positive(high - at_0, -slope))
+    }
+
     /// Length \[L\]; zero if the ends are swapped.
     pub fn length(&self) -> f64 {
         (self.end - self.start).max(0.0)

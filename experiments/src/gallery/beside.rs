@@ -66,10 +66,7 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
         .enumerate()
         .map(|(n, method)| Ok((method, large.rival(&format!("equal-{n}"), method, ours.facts.seconds)?)))
         .collect::<anyhow::Result<Vec<(ByLight, CachedRender)>>>()?;
-    let lines = picture
-        .lines
-        .iter()
-        .flat_map(|lines| Stored::of(lines).map(move |stored| (lines, stored)))
+    let lines = Stored::of(picture)
         .map(|of| Ok((of.1, large.lines(of, &ours.facts)?)))
         .collect::<anyhow::Result<Vec<(Stored, CachedRender)>>>()?;
     // Before anything that is compared is made.

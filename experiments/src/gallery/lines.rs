@@ -28,10 +28,12 @@ impl Stored {
     /// All of them.
     pub const ALL: [Stored; 3] = [Stored::Points, Stored::Beams, Stored::Planes];
 
-    /// Those that are asked for, in this order.
-    pub fn of(lines: &Lines) -> impl Iterator<Item = Stored> {
-        let has_planes = lines.planes.is_some();
-        Self::ALL.into_iter().filter(move |stored| *stored != Stored::Planes || has_planes)
+    /// What is asked for of a picture, in this order.
+    pub fn of(picture: &Picture) -> impl Iterator<Item = (&Lines, Stored)> {
+        picture.lines.iter().flat_map(|lines| {
+            let is_asked = |stored: &Stored| stored.asked(lines).is_some();
+            Self::ALL.into_iter().filter(is_asked).map(move |stored| (lines, stored))
+        })
     }
 
     /// Their name on the page.
@@ -61,12 +63,12 @@ impl Stored {
         }
     }
 
-    /// How much of it each map takes, and the radius in the first one \[L\].
-    fn asked(self, lines: &Lines) -> (Amount, f64) {
+    /// How much of it each map takes, and the radius in the first one \[L\]; none where it is not asked for.
+    fn asked(self, lines: &Lines) -> Option<(Amount, f64)> {
         match self {
-            Stored::Points => lines.points,
-            Stored::Beams => lines.beams,
-            Stored::Planes => lines.planes.unwrap_or(lines.beams),
+            Stored::Points => Some(lines.points),
+            Stored::Beams => Some(lines.beams),
+            Stored::Planes => lines.planes,
         }
     }
 }
@@ -84,7 +86,9 @@ fn settings(
         Amount::Emitted(n) => Amount::Emitted(n.div_ceil(lines.parts)),
         Amount::Stored(n) => Amount::Stored(n.div_ceil(lines.parts)),
     };
-    let (volume, radius) = stored.asked(lines);
+    let nothing =
+        || turbid::Error::Scene(format!("{} of {}; allowed: what is asked for", stored.name(), picture.name));
+    let (volume, radius) = stored.asked(lines).ok_or_else(nothing)?;
     let (global, caustic) = (part(usual.global), part(usual.caustic));
     let mut read = recipe::readout(picture, 1)?;
     let gathers = [&mut read.global.1, &mut read.caustic.1, &mut read.volume.gather];
@@ -167,22 +171,21 @@ mod tests {
     /// Where light is read along rays there is a medium that scatters it, every map has its own photons, and radii shrink.
     #[test]
     fn maps_follow_each_other() {
-        let with_lines: Vec<_> = ALL.iter().filter_map(|p| Some((p, p.lines?))).collect();
-        assert!(with_lines.len() > 1);
-        for (picture, lines) in with_lines {
-            for stored in Stored::of(&lines) {
-                let of = |map| settings(picture, (&lines, stored), [0.1, 0.0, 0.2], 1, map).unwrap();
-                let ((maps, first), (others, later)) = (of(0), of(5));
-                assert_eq!(
-                    (maps.media.beams().is_some(), maps.media.has_planes(), maps.replicate + 5),
-                    (stored != Stored::Points, stored == Stored::Planes, others.replicate)
-                );
-                let radius =
-                    |s: &mapper::Settings| s.volume.ray_radius.or(s.volume.beam_radius).unwrap().get();
-                assert!(radius(&later) < radius(&first) && first.volume.reads_rays(), "{}", picture.name);
-                assert!(later.global.1.cap() < first.global.1.cap());
-                assert_eq!(later.caustic, first.caustic, "nothing is found about no radius");
-            }
+        let of_pictures: Vec<_> = ALL.iter().flat_map(|p| Stored::of(p).map(move |of| (p, of))).collect();
+        let pictures = |stored| of_pictures.iter().filter(|(_, of)| of.1 == stored).count();
+        assert!(pictures(Stored::Points) > 1 && pictures(Stored::Planes) > 0);
+        for (picture, lines) in of_pictures {
+            let stored = lines.1;
+            let of = |map| settings(picture, lines, [0.1, 0.0, 0.2], 1, map).unwrap();
+            let ((maps, first), (others, later)) = (of(0), of(5));
+            assert_eq!(
+                (maps.media.beams().is_some(), maps.media.has_planes(), maps.replicate + 5),
+                (stored != Stored::Points, stored == Stored::Planes, others.replicate)
+            );
+            let radius = |s: &mapper::Settings| s.volume.ray_radius.or(s.volume.beam_radius).unwrap().get();
+            assert!(radius(&later) < radius(&first) && first.volume.reads_rays(), "{}", picture.name);
+            assert!(later.global.1.cap() < first.global.1.cap());
+            assert_eq!(later.caustic, first.caustic, "nothing is found about no radius");
         }
     }
 }

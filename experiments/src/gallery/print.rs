@@ -77,7 +77,7 @@ pub fn print(
     let ours = cache.photons("photons", picture.samples.div_ceil(FEWER), 0)?;
     write("photons", &ours.total)?;
     let mut along = Vec::new();
-    for of in picture.lines.iter().flat_map(|lines| Stored::of(lines).map(move |stored| (lines, stored))) {
+    for of in Stored::of(picture) {
         let render = cache.lines(of, &ours.facts)?;
         write(of.1.kind(), &render.total)?;
         along.push((of.1.kind().to_string(), render.facts));
