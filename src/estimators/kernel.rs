@@ -1,6 +1,7 @@
 //! Kernels: how the photons of a ball, of a disc, or the beams along a line, are weighted by their distance from its centre.
 
 use crate::math::{exp, exp_m1, ln_1p, sin};
+use glam::DVec3;
 use libm::{asin, cbrt, erf};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -168,6 +169,12 @@ impl Kernel {
             Kernel::Biweight => (1.0 - u2) * (1.0 - u2),
             Kernel::Gaussian => exp(-A * u2),
         }
+    }
+
+    /// K at a vector over the radius, 0 beyond its ball.
+    pub fn at(self, away: DVec3) -> f64 {
+        let u2 = away.length_squared();
+        if u2 <= 1.0 { self.peak() * self.profile(u2) } else { 0.0 }
     }
 
     /// [`Kernel::profile`] for eight photons, within 1e-6 of it (tested), that is a few roundings of f32.

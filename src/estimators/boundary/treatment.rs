@@ -70,8 +70,7 @@ impl Treatment {
                 let whole = Kernel::Uniform.peak();
                 let mut sum = plain;
                 photons.each(Kernel::Uniform, &mut |photon, share| {
-                    let weights =
-                        images.iter().map(|image| image_weight(kernel, (photon.position - image) / radius));
+                    let weights = images.iter().map(|image| kernel.at((photon.position - image) / radius));
                     let weight = share / whole * weights.sum::<f64>() / r3 * value(photon);
                     sum += Spectrum(photon.power.as_dvec3()) * weight;
                 });
@@ -88,12 +87,6 @@ impl Treatment {
             }
         }
     }
-}
-
-/// The kernel of radius 1 at a vector, 0 beyond its ball.
-fn image_weight(kernel: Kernel, away: DVec3) -> f64 {
-    let u2 = away.length_squared();
-    if u2 <= 1.0 { kernel.peak() * kernel.profile(u2) } else { 0.0 }
 }
 
 /// The constant of the straight line fitted to a field with moments S_0 and S_1; that of a constant, in a body too thin for a

@@ -9,12 +9,14 @@ use super::sheets::{FaceLine, Sheets, rectangles_of};
 use super::surfaces::Boundary;
 use crate::estimators::Kernel;
 use crate::estimators::disc_share::share_in_circle;
-use crate::geometry::{Front, Rectangle, Shape};
+use crate::estimators::kernel::UNIT_BALL;
+use crate::geometry::{Face, Front, Rectangle, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
 use crate::photons::PhotonTree;
 use crate::photons::tree::Neighbors;
 use crate::rng::{Purpose, Stream};
 use glam::{DVec2, DVec3};
+use libm::cbrt;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
@@ -25,8 +27,10 @@ const DIRECTIONS: u32 = 64;
 const ENOUGH: f64 = 24.0;
 /// Directions across a ray: at a flat wall the part is then within about a hundredth of the true one.
 pub(super) const ACROSS: u32 = 32;
-/// No more directions than this; nor is a part less than one of them.
-const MOST: u32 = 16 * DIRECTIONS;
+/// No more sets than this; nor is a part less than one direction of all of them.
+const SETS: u32 = 16;
+/// A medium is flat if it fills less than this of a ball as far as its end, or the kernel's: directions would then hardly ever add up to enough.
+const FLAT: f64 = 0.1;
 /// Bodies lie in or behind a plane if they reach no farther out of it than this part of the point's distance: what rounding
 /// of a scene's numbers leaves. They hide no larger part of the kernel then.
 const ON_PLANE: f64 = 1e-6;
@@ -200,10 +204,11 @@ impl<'a> Surroundings<'a> {
         distance < 0.999 * self.clear || !self.bodies.iter().any(hides)
     }
 
-    /// The part of a kernel on a ray that is in the medium and seen; `within` is the part within a distance over the radius.
-    fn along(&self, within: &impl Fn(f64) -> f64, dir: DVec3, radius: f64) -> f64 {
+    /// The part of a kernel on a ray that is in the medium and seen, up to a `reach` \[L\]; `within` is the part within a distance over the
+    /// radius.
+    fn along(&self, within: &impl Fn(f64) -> f64, dir: DVec3, (radius, reach): (f64, f64)) -> f64 {
         let ray = Ray::new(self.eye, dir);
-        let mut end = radius;
+        let mut end = reach;
         for body in &self.bodies {
             if !body.front.is_some_and(|front| front.height(dir * end) >= 0.0) {
                 end = body.shape.until(&ray, end);
@@ -229,7 +234,8 @@ impl<'a> Surroundings<'a> {
 
     /// The part of the kernel in which photons are kept, which a sum over photons is divided by: by rays in directions that are
     /// turned at random, right in the mean over turns. The turn is a function of the place and of `salt`: with that of a
-    /// map's run means over maps are right at a single point too.
+    /// map's run means over maps are right at a single point too. Where few directions see far into a flat medium, they tell what is near, and
+    /// random places what is not.
     pub fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
         if let Some(screen) = self.screen.filter(|_| self.room >= radius && self.later.is_empty()) {
             return 1.0 - kernel.beyond_plane(screen.distance / radius);
@@ -240,18 +246,49 @@ impl<'a> Surroundings<'a> {
             kernel.within(((self.eye.distance(center) + size) / radius).min(1.0)).max(LEAST_OF_ALL)
         });
         let mut stream = stream_of(self.eye, salt);
-        let (mut sum, mut count) = (0.0, 0);
-        while sum < ENOUGH * most && count < MOST {
+        let within = |u: f64| kernel.within(u);
+        let in_a_set = |stream: &mut Stream, reach: f64| {
             let axes = Frame::new(warp::square_to_sphere(stream.pair()));
             let (sin, cos) = sin_cos(TAU * stream.unit());
             let (across, beside) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
-            for dir in SPIRAL.iter() {
-                let dir = across * dir.x + beside * dir.y + axes.z * dir.z;
-                sum += self.along(&|u| kernel.within(u), dir.normalize(), radius);
+            let turned = |dir: &DVec3| (across * dir.x + beside * dir.y + axes.z * dir.z).normalize();
+            SPIRAL.iter().map(|dir| self.along(&within, turned(dir), (radius, reach))).sum::<f64>()
+        };
+        let (low, high) = self.box_about(radius);
+        let volume = ((high - low) / radius).element_product();
+        if volume > FLAT * UNIT_BALL * most {
+            let (mut sum, mut sets) = (0.0, 0);
+            while sum < ENOUGH * most && sets < SETS {
+                sum += in_a_set(&mut stream, radius);
+                sets += 1;
             }
-            count += DIRECTIONS;
+            return (sum / f64::from(sets * DIRECTIONS)).max(most / f64::from(SETS * DIRECTIONS));
         }
-        (sum / f64::from(count)).max(most / f64::from(MOST))
+        // Nearer than this a direction tells more than a place.
+        let reach = radius * cbrt(volume / UNIT_BALL);
+        let near: f64 = (0..SETS).map(|_| in_a_set(&mut stream, reach)).sum();
+        let far: f64 = (0..SETS * DIRECTIONS)
+            .map(|_| {
+                let place = low + (high - low) * DVec3::from(stream.triple());
+                let away = place - self.eye;
+                let is_inside = || self.medium.is_none_or(|medium| medium.contains(place));
+                let is_kept = away.length() > reach && is_inside() && self.keeps(place);
+                if is_kept { kernel.at(away / radius) } else { 0.0 }
+            })
+            .sum();
+        ((near + far * volume) / f64::from(SETS * DIRECTIONS)).max(LEAST_OF_ALL)
+    }
+
+    /// Corners of a box about the part of the medium within a radius of the eye \[L\].
+    fn box_about(&self, radius: f64) -> (DVec3, DVec3) {
+        let (low, high) = (self.eye - radius, self.eye + radius);
+        match self.medium {
+            Some(Shape::Slab(slab)) => {
+                (low.with_z(low.z.max(slab.top())), high.with_z(high.z.min(slab.face(Face::Bottom))))
+            }
+            Some(medium) => medium.corners().map_or((low, high), |(min, max)| (low.max(min), high.min(max))),
+            None => (low, high),
+        }
     }
 
     /// The planes before which everything is kept that is within a radius, and the rectangles that hide something of it; none where
@@ -294,7 +331,7 @@ impl<'a> Surroundings<'a> {
         }
         let (sin, cos) = sin_cos(TAU * stream_of(self.eye, salt).unit() / f64::from(ACROSS));
         let (x, y) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
-        let one = |to: &DVec2| self.along(&|u| kernel.within_disc(u), x * to.x + y * to.y, radius);
+        let one = |to: &DVec2| self.along(&|u| kernel.within_disc(u), x * to.x + y * to.y, (radius, radius));
         DiscShare { part: CIRCLE.iter().map(one).sum::<f64>() / f64::from(ACROSS), is_sampled: true }
     }
 
@@ -302,7 +339,7 @@ impl<'a> Surroundings<'a> {
     /// one side, where there is a beam.
     pub fn line_share(&self, kernel: Kernel, across: DVec3, radius: f64, seen: f64) -> f64 {
         let half = |u: f64| 0.5 * kernel.within_line(u);
-        let sum = self.along(&half, across, radius) + self.along(&half, -across, radius);
+        let sum = self.along(&half, across, (radius, radius)) + self.along(&half, -across, (radius, radius));
         sum.max(half(seen / radius)).max(f64::MIN_POSITIVE)
     }
 }
@@ -311,7 +348,7 @@ impl<'a> Surroundings<'a> {
 mod tests {
     use super::*;
     use crate::estimators::boundary::moments::body_part;
-    use crate::geometry::{Cuboid, Rectangle, Sphere};
+    use crate::geometry::{Cuboid, Rectangle, Slab, Sphere};
     use crate::stats::Moments;
 
     /// A block turned about z, of five rectangles or six, and one along the axes; each reaches up to about z = 0.
@@ -361,6 +398,49 @@ mod tests {
                 let off = ratios.mean() - 1.0;
                 assert!(off.abs() < 4.0 * ratios.std_error() + 1e-6, "{medium:?} {kernel:?} {radius}: {off}");
                 assert!(ratios.std_error() < 0.005, "{medium:?} {kernel:?} {radius}: {}", ratios.std_error());
+            }
+        }
+    }
+
+    /// Flat media into which few directions see far, with a speck in them or a wall across near the point: the part is that of the
+    /// medium alone, or of what the wall leaves of it, known in closed form.
+    #[test]
+    fn flat_media_have_the_parts_that_few_directions_see() {
+        let speck = Shape::Sphere(Sphere::new(DVec3::new(0.1, 0.2, 0.3), 1e-6).unwrap());
+        let cuboid = |low, high| Shape::Cuboid(Cuboid::new(low, high).unwrap());
+        let (low, high) = (DVec3::new(-1e3, -1e3, 0.0), DVec3::new(1e3, 1e3, 1.0));
+        let medium = cuboid(low, high);
+        let wall = |x: f64| {
+            let corner = DVec3::new(x, low.y - 1.0, -1.0);
+            Shape::Rectangle(Rectangle::new(corner, DVec3::Y * 2002.0, DVec3::Z * 3.0).unwrap())
+        };
+        let point = DVec3::new(0.0, 0.0, 0.4);
+        let between = |from, to| cuboid(low.with_x(from), high.with_x(to));
+        let slab = Shape::Slab(Slab::new(0.0, 1.0).unwrap());
+        let cases = [
+            (&medium, speck.clone(), medium.clone()),
+            (&medium, wall(0.2), between(-1e3, 0.2)),
+            (&slab, speck, slab.clone()),
+        ];
+        for ((medium, body, left), kernel) in
+            cases.iter().flat_map(|case| Kernel::ALL.map(|kernel| (case, kernel)))
+        {
+            let bodies = std::slice::from_ref(body);
+            let boundary = Boundary::of(medium).unwrap().about(bodies);
+            for radius in [3.0, 30.0, 300.0, 3e3, 3e4] {
+                let surroundings = Surroundings::new(&boundary, point, point, radius);
+                let known = body_part(kernel, left, point, radius);
+                let mut ratios = Moments::new();
+                // What estimates divide by.
+                for salt in 0..64 {
+                    ratios.push(known / surroundings.share(kernel, radius, salt));
+                }
+                let off = ratios.mean() - 1.0;
+                assert!(
+                    off.abs() < 4.0 * ratios.std_error() + 0.003,
+                    "{kernel:?} {radius}: {off} {bodies:?}"
+                );
+                assert!(ratios.std_error() < 0.01, "{kernel:?} {radius}: {}", ratios.std_error());
             }
         }
     }
