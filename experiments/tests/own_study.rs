@@ -87,6 +87,7 @@ fn threads_and_parts_change_nothing() {
     // A part that is lost is named; one of another seed, or that differs, is refused.
     let lost = refused(at, &["mine.toml", "--out", "lost", "--merge", "b"]);
     assert!(lost.contains("are in none of the merged folders, such as own/scene"), "{lost}");
+    assert!(!at.join("lost").exists());
     study(at, &["mine.toml", "--out", "c", "--part", "1/3", "--seed", "7"]).assert().success();
     let other = refused(at, &["mine.toml", "--out", "mixed", "--merge", "b", "c"]);
     assert!(other.contains("of other settings") && other.contains("seed 7"), "{other}");

@@ -7,7 +7,8 @@ use crate::geometry::Shape;
 use crate::light::Light;
 use crate::math::{FOUR_PI, Ray, exp, ln};
 use crate::phase::PhaseFunction;
-use crate::scene::Scene;
+use crate::scene::{SURROUNDINGS, Scene, Target};
+use crate::surface::Surface;
 use glam::DVec3;
 
 /// Weights between these parts of what they should be are left alone: a game for less costs more than it saves.
@@ -15,6 +16,9 @@ const WINDOW: (f64, f64) = (0.5, 2.0);
 /// A history ends with nine tenths at most, and is split into eight at most, so that a value guessed wrongly does little.
 const LEAST: f64 = 0.1;
 const MOST: f64 = 8.0;
+
+/// Bodies on the way to a light after which the rest of it is taken to lie where the way has come to.
+const BODIES: u32 = 64;
 
 /// How many histories go on for one whose weight is `ratio` times as large as it should be, and the factor on the weight of
 /// each: their expected product is 1, whatever the ratio.
@@ -44,6 +48,8 @@ pub struct WeightWindows {
     lights: Vec<(Aim, f64)>,
     /// By medium, its highest rate of decay [1/L].
     rates: Vec<f64>,
+    /// Whether a medium fills a body, so that what stands between is asked where such media begin and end.
+    is_filled: bool,
 }
 
 /// Where a light is.
@@ -73,7 +79,8 @@ impl WeightWindows {
         let lights = lights.ok_or_else(|| {
             Error::Scene("weight windows need lights in a place or from a direction: isotropic light into a body, and sources in a slab without end, are on all sides".into())
         })?;
-        Ok(WeightWindows { lights, rates })
+        let is_filled = (0..scene.interiors().len()).any(|interior| scene.filling(interior).is_some());
+        Ok(WeightWindows { lights, rates, is_filled })
     }
 
     /// Where a light is, and the fluence that it brings to a distance of 1, or to everywhere.
@@ -115,9 +122,7 @@ impl WeightWindows {
                 }
                 Aim::Direction(dir) => (Ray::new(p, *dir), f64::INFINITY, 0.0),
             };
-            let segments = scene.segments(&ray, end, interior);
-            let depth: f64 = segments.iter().map(|s| self.rates[s.medium] * s.interval.length()).sum();
-            ln(*value) - spread - depth
+            ln(*value) - spread - self.depth(scene, ray, end, interior)
         };
         let (mut largest, mut sum) = (f64::NEG_INFINITY, 0.0);
         for light in &self.lights {
@@ -130,6 +135,34 @@ impl WeightWindows {
             }
         }
         largest + ln(sum)
+    }
+
+    /// The decay on the straight way to `end`, through all bodies, from interior to interior \[1\].
+    fn depth(&self, scene: &Scene, mut ray: Ray, mut end: f64, mut interior: usize) -> f64 {
+        let within = |ray: &Ray, end: f64, interior: usize| {
+            let segments = scene.segments(ray, end, interior);
+            segments.iter().map(|s| self.rates[s.medium] * s.interval.length()).sum::<f64>()
+        };
+        let (mut depth, mut start) = (0.0, None);
+        for _ in 0..if self.is_filled { BODIES } else { 0 } {
+            let Some(found) = scene.hit(&ray, start) else {
+                // Rounding has put the place behind the face that it is before.
+                interior = SURROUNDINGS;
+                break;
+            };
+            if found.hit.t >= end {
+                break;
+            }
+            depth += within(&ray, found.hit.t, interior);
+            if let Target::Object(index) = found.target
+                && let Surface::Dielectric(boundary) = &scene.objects()[index].surface
+            {
+                interior = boundary.sides(ray.dir, found.hit.normal).1;
+            }
+            ray = Ray::new(ray.at(found.hit.t), ray.dir);
+            (start, end) = (Some(found.start()), end - found.hit.t);
+        }
+        depth + within(&ray, end, interior)
     }
 
     /// How far a flight goes from `flown` on before a game is played: one length of decay, or to its end.

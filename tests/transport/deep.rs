@@ -3,17 +3,21 @@
 //! The void problem of Kobayashi, Sugimura and Nagaya (OECD/NEA 2000), number 1, half scattering: a source in the middle of
 //! a void in a shield of ten mean free paths, its reflecting planes unfolded.
 
+use crate::checks::glass;
 use crate::checks::slab::{exact, referee};
 use crate::support::run::{histories, numbers, paths};
 use crate::support::scenes::{
-    Incidence, bounded, cuboid, emitting_sphere, homogeneous, region, slab, sphere, transmittance,
+    Incidence, bounded, cuboid, dielectric, emitting_sphere, filled, fresnel_slab, homogeneous, lambertian,
+    point_light, rectangle, region, slab, sphere, transmittance,
 };
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
+use turbid::geometry::Shape;
 use turbid::integrators::Guides;
-use turbid::light::{Light, VolumeSource};
-use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts, Sensor};
+use turbid::light::{Light, Sun, VolumeSource};
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::{Interior, Object, Orders, Quantity, Region, Scene, SceneParts, Sensor};
 use turbid::sensor::{NoError, PathSettings, by_paths, sample_guided};
 use turbid::stats::Moments;
 use turbid::transport::{NoProgress, WeightWindows};
@@ -109,6 +113,78 @@ fn windows_cross_twenty_mean_free_paths() {
         let value = exact(referee(tau, albedo, how).transmittance());
         verdict::agrees(&format!("{how:?}"), &moments, value, 0.25 * value.0, seed);
     }
+}
+
+/// A slab of five mean free paths that absorbs a third and refracts, and a thin one, whose media fill bodies: paths enter them from outside.
+#[test]
+fn windows_enter_a_refracting_slab() {
+    for (tau, albedo, g, index, seed) in [(1.0, 0.9, 0.6, 1.33, 38), (5.0, 0.7, 0.0, 1.5, 40)] {
+        let scene = fresnel_slab(tau, albedo, g, index, Incidence::Diffuse);
+        let exact = glass::referee(tau, albedo, g, index, Incidence::Diffuse);
+        let values = [exact.reflectance(), exact.transmittance()];
+        for ((quantity, value), seed) in glass::faces(tau).iter().zip(values).zip(seed..) {
+            let moments = guided(&scene, quantity, 40_000, seed);
+            verdict::agrees(
+                &format!("{quantity:?}"),
+                &moments,
+                (value.value, value.error),
+                0.15 * value.value,
+                seed,
+            );
+        }
+    }
+}
+
+/// Balls about one another, and a wall beside them: where media fill bodies that do not refract light is guessed as where they are regions.
+#[test]
+fn windows_guess_alike_in_bodies_and_regions() {
+    let balls =
+        [(DVec3::new(0.2, 0.1, 0.0), 1.0), (DVec3::new(0.3, -0.1, 0.2), 0.5)].map(|(c, r)| sphere(c, r));
+    let media = [2.0, 0.5].map(|sigma_t| homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(0.8), 0.5));
+    let wall = (
+        Shape::Rectangle(rectangle(DVec3::new(-2.0, -2.0, 1.4), DVec3::X * 4.0, DVec3::Y * 4.0)),
+        lambertian(Spectrum::grey(0.5)),
+    );
+    let lights = || {
+        vec![
+            point_light(DVec3::new(1.0, 2.0, 0.5), Spectrum::ONE),
+            point_light(DVec3::new(0.35, -0.1, 0.25), Spectrum::grey(0.1)),
+            emitting_sphere(DVec3::new(0.0, 0.0, 3.0), 0.3),
+            Light::Sun(Sun::new(DVec3::new(0.6, 0.0, -0.8), Spectrum::grey(0.01), 0.0).unwrap()),
+        ]
+    };
+    let regions = balls
+        .iter()
+        .zip(&media)
+        .map(|(shape, medium)| Region { shape: shape.clone(), medium: medium.clone() });
+    let by_regions = bounded(regions.collect(), vec![wall.clone()], lights());
+    let filled = Scene::new(SceneParts {
+        interiors: vec![
+            Interior::surroundings(),
+            filled("outer", 1.0, media[0].clone()),
+            filled("inner", 1.0, media[1].clone()),
+        ],
+        objects: vec![
+            Object { shape: balls[0].clone(), surface: dielectric(1, 0) },
+            Object { shape: balls[1].clone(), surface: dielectric(2, 1) },
+            Object { shape: wall.0, surface: wall.1 },
+        ],
+        lights: lights(),
+        ..SceneParts::default()
+    })
+    .unwrap();
+    let guess = |scene: &Scene, p: DVec3| {
+        WeightWindows::new(scene).unwrap().ln_fluence(scene, p, scene.interior_at(p))
+    };
+    let mut stream = Stream::new(42, Purpose::Synthetic, 0, 0);
+    let mut inside = [0; 3];
+    for _ in 0..2000 {
+        let p = 4.0 * DVec3::from(stream.triple()) - 2.0;
+        inside[filled.interior_at(p)] += 1;
+        let (expected, found) = (guess(&by_regions, p), guess(&filled, p));
+        assert!((found - expected).abs() < 1e-9, "{p}: {found}, not {expected}");
+    }
+    assert!(inside.iter().all(|count| *count > 10), "{inside:?}");
 }
 
 /// Paths that a black body has ended go no further, whatever the windows: there is nothing to choose a channel by.

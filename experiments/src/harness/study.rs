@@ -218,7 +218,22 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
     let experiments = selected(study.experiments, &settings.only)?;
     // Before a folder of its own is made.
     settings.merge.iter().try_for_each(|folder| check_mergeable(folder))?;
+    let is_new = !settings.out.exists();
     let _held = lock::hold(&settings.out, settings.part, watch)?;
+    let outcome = run_held(study, &experiments, settings, watch);
+    if outcome.is_err() && is_new && !settings.merge.is_empty() {
+        // It holds copies alone. What was wrong is said already.
+        let _ = std::fs::remove_dir_all(&settings.out);
+    }
+    outcome
+}
+
+fn run_held(
+    study: &Study,
+    experiments: &[Experiment],
+    settings: &Settings,
+    watch: &dyn Watch,
+) -> anyhow::Result<Outcome> {
     let planned: Vec<anyhow::Result<Vec<(CellId, Measure)>>> =
         experiments.iter().map(|experiment| whole(|| plan(experiment, settings))).collect();
     check_memory(planned.iter().flatten().flatten().map(|(cell, _)| cell.held).max().unwrap_or(0), settings)?;
@@ -291,7 +306,7 @@ pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> any
             names.join(", ")
         );
     }
-    let predicted = prediction_table(&experiments, &predictions)?;
+    let predicted = prediction_table(experiments, &predictions)?;
     let write_predicted = || write_if_changed(&settings.out.join("predictions.csv"), &predicted);
     // Those of a question stand beside its cells until it is answered: what was concluded before stays whole if it is not.
     if settings.question.is_none() {
