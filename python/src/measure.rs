@@ -188,13 +188,13 @@ impl Request {
             matches!(s.quantity, Quantity::Fluence(_) | Quantity::Binned(Binned::Fluence { .. }))
         };
         let has_balls = !beam_fluence && scene.sensors().iter().any(is_of_balls)
-            || (ray_radius, beam_radius) == (None, None);
+            || (ray_radius, beam_radius) == (None, None) && !planes;
         if !has_balls {
             check_about_rays(self.treatment)?;
             if k.is_some() || max_radius.is_some() {
                 return Err(anyhow!(
-                    "k and max_radius are of balls, and no sensor is read from one; allowed: with sensors of fluence, or without ray_radius \
-                     and beam_radius"
+                    "k and max_radius are of balls, and no sensor is read from one; allowed: with sensors of fluence, or without ray_radius, \
+                     beam_radius and planes"
                 ));
             }
         }

@@ -79,10 +79,12 @@ fn tables_say_what_they_were_made_with() {
         refuses_naming(&[&never[..], &about, &["--volume-k", "20"]].concat(), &["--volume-k"]);
         let treated = [&never[..], &about, &["--boundary", "reflection"]].concat();
         refuses_naming(&treated, &["--boundary is reflection, of balls", "none, clipped"]);
-        let alone = folder.file("alone.toml", RAYS.split("[[sensors]]\nname = 'inside'").next().unwrap());
+    }
+    let alone = folder.file("alone.toml", RAYS.split("[[sensors]]\nname = 'inside'").next().unwrap());
+    for about in [&["--beam-radius", "0.1"], &["--ray-radius", "0.1"], &["--planes", "--orders=2.."]] {
         for of_balls in [&["--k", "20"][..], &["--max-radius", "0.2"], &["--boundary", "local-linear"]] {
             let asked = ["measure", text(&alone), "--with", "photons", "--photons", "800"];
-            refuses_naming(&[&asked[..], &about, of_balls].concat(), &[of_balls[0], "of balls"]);
+            refuses_naming(&[&asked[..], about, of_balls].concat(), &[of_balls[0], "of balls"]);
         }
     }
     // What would be ignored is refused, also where what it depends on is kept away by another flag.

@@ -428,9 +428,10 @@ impl Measure {
                 }
             }
         }
-        let has_balls = !self.beam_fluence && scene.sensors().iter().any(is_of_balls)
-            || (ray_radius, beam_radius) == (None, None);
-        if self.progressive && has_balls && self.radius.is_none() {
+        let has_radii = (ray_radius, beam_radius) != (None, None);
+        let has_balls =
+            !self.beam_fluence && scene.sensors().iter().any(is_of_balls) || !(has_radii || self.planes);
+        if self.progressive && (has_balls || !has_radii) && self.radius.is_none() {
             bail!(
                 "--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, or, for sensors of \
                  radiance alone, --ray-radius or --beam-radius"
@@ -442,7 +443,8 @@ impl Measure {
             {
                 if is_given {
                     bail!(
-                        "{option} is of balls, and no sensor is read from one; allowed: with sensors of fluence, or without --ray-radius and --beam-radius"
+                        "{option} is of balls, and no sensor is read from one; allowed: with sensors of fluence, or without --ray-radius, \
+                         --beam-radius and --planes"
                     );
                 }
             }
