@@ -10,6 +10,7 @@ use crate::geometry::Sphere;
 use crate::light::{Light, PeriodicCell};
 use crate::math::{Interval, Ray, exp};
 use crate::medium::Medium;
+use glam::DVec3;
 use std::sync::OnceLock;
 
 /// A scene whose parts have been checked together.
@@ -23,6 +24,10 @@ pub struct Scene {
     /// Whether photons can start wherever media emit.
     pub(super) is_emission_bounded: bool,
     pub(super) light_within: Vec<Option<usize>>,
+    /// The interiors that reach out of the scene.
+    pub(super) far: Vec<usize>,
+    /// Places on dielectric surfaces.
+    pub(super) marks: Vec<DVec3>,
     pub(super) bodies: Bodies,
     pub(super) region_tree: Option<RegionTree>,
     pub(super) periodic_cell: Option<PeriodicCell>,

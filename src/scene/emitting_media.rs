@@ -62,7 +62,12 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
                 }
                 _ => false,
             };
-            add(number, interior, &bodies.unwrap_or(ball.iter().collect()), is_alone);
+            // About all closed bodies, or behind a surface that encloses nothing, it has no end.
+            let shapes = match scene.far.contains(&interior) {
+                true => Vec::new(),
+                false => bodies.unwrap_or(ball.iter().collect()),
+            };
+            add(number, interior, &shapes, is_alone);
         }
     }
     (lights, is_all)

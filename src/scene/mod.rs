@@ -84,6 +84,8 @@ impl Scene {
             lights,
             is_emission_bounded: true,
             light_within: Vec::new(),
+            far: Vec::new(),
+            marks: Vec::new(),
             bodies,
             region_tree,
             periodic_cell,
@@ -91,6 +93,8 @@ impl Scene {
             plan,
             answers: Answers::default(),
         };
+        scene.marks = interiors::marks(&scene);
+        scene.far = interiors::far(&scene);
         let (emitting, is_emission_bounded) = emitting_media::of(&scene);
         scene.lights.extend(emitting);
         scene.is_emission_bounded = is_emission_bounded;

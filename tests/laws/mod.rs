@@ -5,6 +5,7 @@ mod color;
 mod emitters;
 mod flight;
 mod fresnel;
+mod interiors;
 mod lights;
 mod media;
 mod phase;

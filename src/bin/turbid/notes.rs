@@ -84,8 +84,7 @@ pub fn tell_gathers(
     let is_diffuse = |surface: &Surface| matches!(surface, Surface::Lambertian(_));
     let bodies = scene.objects().iter().filter(|o| is_diffuse(&o.surface));
     let body = smallest(&mut bodies.map(|o| &o.shape));
-    let regions = scene.regions().iter().filter(|r| r.medium.is_colliding());
-    let medium = smallest(&mut regions.map(|r| &r.shape));
+    let medium = smallest(&mut scene.colliding_shapes());
     // Of the thinnest medium: a picture of several has one mean radius.
     let colliding = scene.media().iter().filter(|m| m.is_colliding());
     let path = 1.0 / colliding.map(|m| m.highest_sigma_t().max()).fold(f64::INFINITY, f64::min);

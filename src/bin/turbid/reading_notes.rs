@@ -3,6 +3,7 @@
 use super::notes::{PEAKED, peak};
 use turbid::estimators::Estimator;
 use turbid::estimators::boundary::Treatment;
+use turbid::geometry::Shape;
 use turbid::math::FOUR_PI;
 use turbid::phase::PhaseFunction;
 use turbid::photons::Ledger;
@@ -52,8 +53,7 @@ pub fn note_of_peaks(scene: &Scene, maps: u64) -> Option<String> {
 pub fn notes_of_gathers(scene: &Scene, readings: &PhotonReadings, estimator: &Estimator) -> Vec<String> {
     let PhotonReadings { beyond, underfull, gathers, .. } = readings;
     let mut notes = Vec::new();
-    let regions = scene.regions().iter().filter(|region| region.medium.is_colliding());
-    let thinnest = regions.map(|region| region.shape.shortest_extent()).fold(f64::INFINITY, f64::min);
+    let thinnest = scene.colliding_shapes().map(Shape::shortest_extent).fold(f64::INFINITY, f64::min);
     let radius = estimator.gather.cap();
     if estimator.treatment == Treatment::Reflection && estimator.gather.k().is_none() && radius > thinnest {
         notes.push(format!(

@@ -392,9 +392,6 @@ static FIT: std::sync::OnceLock<[f64; BALLS]> = std::sync::OnceLock::new();
 /// jumps; 0 on the boundary of its medium and on that edge.
 fn reach(scene: &Scene, sensor: &Sensor) -> f64 {
     let Quantity::Fluence(p) = sensor.quantity else { return 0.0 };
-    let Some(region) = scene.medium_number_at(p).and_then(|number| scene.regions().get(number)) else {
-        return 0.0;
-    };
     let half_cell =
         scene.periodic_cell().map_or(f64::INFINITY, |periodic_cell| 0.5 * periodic_cell.side.min_element());
     let walls = scene.objects().iter().map(|o| o.shape.room(p).abs()).filter(|r| *r > 0.0);
@@ -404,7 +401,7 @@ fn reach(scene: &Scene, sensor: &Sensor) -> f64 {
         _ => light.apex().map(|apex| 0.5 * p.distance(apex)),
     });
     let nearest = walls.chain(others).chain(lights).fold(half_cell, f64::min);
-    nearest.min(mean_free_path(scene, sensor)).min(region.shape.room(p))
+    nearest.min(mean_free_path(scene, sensor)).min(scene.room(p))
 }
 
 /// The mean free path where a probe is \[L\]; infinite outside all media.
