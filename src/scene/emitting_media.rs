@@ -1,6 +1,7 @@
 //! Media that emit, as lights: their photons start in them.
 
-use super::interiors::{dielectrics, is_clear_of};
+use super::interiors::is_clear_of;
+use super::place::dielectrics;
 use super::{SURROUNDINGS, Scene, SceneParts};
 use crate::Spectrum;
 use crate::geometry::Shape;

@@ -12,6 +12,7 @@ mod full;
 mod hit;
 mod interiors;
 mod parts;
+mod place;
 mod plan;
 mod read;
 mod regions;
@@ -93,8 +94,8 @@ impl Scene {
             plan,
             answers: Answers::default(),
         };
-        scene.marks = interiors::marks(&scene);
-        scene.far = interiors::far(&scene);
+        scene.marks = place::marks(&scene);
+        scene.far = place::far(&scene);
         let (emitting, is_emission_bounded) = emitting_media::of(&scene);
         scene.lights.extend(emitting);
         scene.is_emission_bounded = is_emission_bounded;

@@ -1,7 +1,7 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
 use super::coincident::REMEDY;
-use super::interiors::dielectrics;
+use super::place::dielectrics;
 use super::{Binned, Camera, Quantity, Scene, SceneParts, Sensor, Space, coincident, interiors};
 use crate::Spectrum;
 use crate::error::{Error, Result};

@@ -736,3 +736,39 @@ fn few_maps_do_not_tell_tails() {
         }
     }
 }
+
+/// Media that fill bodies are media to notes, to advice and to pictures, as those of regions are.
+#[test]
+fn media_in_bodies_are_told_of_as_regions() {
+    let folder = Folder::new();
+    let rest = "\n[[lights]]\nisotropic = { shape = { sphere = { center = [0, 0, 0], radius = 2 } }, faces = 'both', radiance = 1 }\n\
+         [camera]\nposition = [0, 0, -1.5]\nlook_at = [0, 0, 0]\nfov = 40\nwidth = 8\nheight = 8\n\
+         [[sensors]]\nname = 's'\nmeasure = { fluence = { at = [0.05, 0.1, 0] } }\n";
+    let shape = "shape = { sphere = { center = [0, 0, 0], radius = 0.3 } }";
+    let matter = "sigma_t = 2.0, albedo = 0.9, g = 0.0";
+    let region = format!("[[regions]]\n{shape}\n{}{rest}", matter.replace(", ", "\n"));
+    let body = format!(
+        "interiors = [{{ name = 'milk', index = 1.0, {matter} }}]\n[[objects]]\n{shape}\nsurface = {{ dielectric = {{ inside = 'milk' }} }}{rest}"
+    );
+    let told = |scene: &str| {
+        let file = folder.file("scene.toml", scene);
+        let said = |arguments: &[&str]| {
+            let done = turbid(&[&[arguments[0], text(&file)], &arguments[1..]].concat()).output().unwrap();
+            let said = String::from_utf8(done.stderr).unwrap();
+            assert!(done.status.success(), "{said}");
+            (String::from_utf8(done.stdout).unwrap(), said)
+        };
+        let reflected = ["--radius", "0.7", "--boundary", "reflection"];
+        let measured =
+            said(&[&["measure", "--with", "photons", "--photons", "1000"][..], &reflected].concat());
+        assert!(measured.1.contains("in a medium 0.6 L across"), "{}", measured.1);
+        let output = folder.0.path().join("picture.exr");
+        let rendered =
+            said(&["render", "-o", text(&output), "--samples", "1", "--volume", "2000", "--radius", "0.5"]);
+        assert!(rendered.1.contains("the smallest medium is 6.00e-1 L across"), "{}", rendered.1);
+        let advised = said(&["advise", "--target", "20%", "--pilot", "1e5", "--samples", "100"]).0;
+        // As far as the medium's boundary.
+        advised.lines().find(|line| line.starts_with("radius")).unwrap().to_owned()
+    };
+    assert_eq!(told(&region), told(&body));
+}
